@@ -1,0 +1,60 @@
+# add_pf_test(LAYER <layer> SOURCES <test_file>.pf... [<helper>.f90...] [LINKS <library>...])
+#
+# One executable test_<layer>, also the name of its ctest, from the tests of that layer.
+# With pFUnit installed its own preprocessor and library are used, else those in tests/pf.
+find_package(PFUNIT 4.13 QUIET)
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+
+function(add_pf_test)
+  cmake_parse_arguments(PARSE_ARGV 0 arg "" "LAYER" "SOURCES;LINKS")
+  if(arg_UNPARSED_ARGUMENTS OR NOT arg_LAYER OR NOT arg_SOURCES)
+    message(FATAL_ERROR "add_pf_test needs LAYER and SOURCES; unknown: '${arg_UNPARSED_ARGUMENTS}'")
+  endif()
+
+  set(name test_${arg_LAYER})
+  set(suites ${arg_SOURCES})
+  list(FILTER suites INCLUDE REGEX "\\.pf$")
+  set(helpers ${arg_SOURCES})
+  list(FILTER helpers EXCLUDE REGEX "\\.pf$")
+
+  if(PFUNIT_FOUND)
+    add_pfunit_ctest(${name} TEST_SOURCES ${suites} OTHER_SOURCES ${helpers})
+  else()
+    add_stand_in_test(${name} "${suites}" "${helpers}")
+  endif()
+  set_target_properties(${name} PROPERTIES
+    Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/modules")
+  target_include_directories(${name} PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/modules")
+  target_link_libraries(${name} PRIVATE tessera_${arg_LAYER} tessera_build ${arg_LINKS})
+  set_tests_properties(${name} PROPERTIES
+    WORKING_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}"
+    ENVIRONMENT "TESSERA_SOURCE_DIR=${PROJECT_SOURCE_DIR}")
+endfunction()
+
+# The same with our own preprocessor: the suites become one Fortran file each, and a driver.
+function(add_stand_in_test name suites helpers)
+  set(preprocessor "${PROJECT_SOURCE_DIR}/tests/pf/pf_to_fortran.py")
+  set(generated)
+  set(inputs)
+  foreach(suite IN LISTS suites)
+    get_filename_component(stem "${suite}" NAME_WE)
+    set(input "${CMAKE_CURRENT_SOURCE_DIR}/${suite}")
+    set(output "${CMAKE_CURRENT_BINARY_DIR}/${stem}.f90")
+    add_custom_command(OUTPUT "${output}"
+      COMMAND Python3::Interpreter "${preprocessor}" suite "${input}" "${output}"
+      DEPENDS "${input}" "${preprocessor}"
+      VERBATIM)
+    list(APPEND inputs "${input}")
+    list(APPEND generated "${output}")
+  endforeach()
+
+  set(driver "${CMAKE_CURRENT_BINARY_DIR}/${name}_driver.f90")
+  add_custom_command(OUTPUT "${driver}"
+    COMMAND Python3::Interpreter "${preprocessor}" driver ${inputs} "${driver}"
+    DEPENDS ${inputs} "${preprocessor}"
+    VERBATIM)
+
+  add_executable(${name} ${helpers} ${generated} "${driver}")
+  target_link_libraries(${name} PRIVATE tessera_funit tessera_warnings)
+  add_test(NAME ${name} COMMAND ${name})
+endfunction()

@@ -1,0 +1,42 @@
+# Compiler options, by what they are for:
+#   tessera_build     what every Fortran target needs: optimisation, run-time checks, OpenMP
+#   tessera_warnings  the language standard and the warnings, for our own sources only
+
+if(NOT CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
+  message(FATAL_ERROR "Tessera is built with gfortran; found ${CMAKE_Fortran_COMPILER_ID}")
+endif()
+if(CMAKE_Fortran_COMPILER_VERSION VERSION_LESS 12)
+  message(FATAL_ERROR "gfortran 12 or newer is needed; found ${CMAKE_Fortran_COMPILER_VERSION}")
+endif()
+
+set(TESSERA_STANDARD_FLAGS -std=f2008)
+set(TESSERA_WARNING_FLAGS -Wall -Wextra -pedantic)
+set(TESSERA_DEBUG_FLAGS
+  -Og -fcheck=all -finit-real=snan -ffpe-trap=invalid,zero,overflow -fbacktrace)
+
+find_package(OpenMP REQUIRED COMPONENTS Fortran)
+
+add_library(tessera_build INTERFACE)
+target_link_libraries(tessera_build INTERFACE OpenMP::OpenMP_Fortran)
+target_compile_options(tessera_build INTERFACE
+  $<$<CONFIG:Debug>:${TESSERA_DEBUG_FLAGS}>
+  $<$<BOOL:${TESSERA_NATIVE}>:-march=native>)
+
+add_library(tessera_warnings INTERFACE)
+target_compile_options(tessera_warnings INTERFACE
+  ${TESSERA_STANDARD_FLAGS} ${TESSERA_WARNING_FLAGS}
+  $<$<BOOL:${TESSERA_WERROR}>:-Werror>)
+
+# The flags as one line, for the log of a run.
+string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
+set(TESSERA_COMPILER_FLAGS
+  ${CMAKE_Fortran_FLAGS} ${CMAKE_Fortran_FLAGS_${build_type}} ${OpenMP_Fortran_FLAGS}
+  ${TESSERA_STANDARD_FLAGS} ${TESSERA_WARNING_FLAGS})
+if(build_type STREQUAL "DEBUG")
+  list(APPEND TESSERA_COMPILER_FLAGS ${TESSERA_DEBUG_FLAGS})
+endif()
+if(TESSERA_NATIVE)
+  list(APPEND TESSERA_COMPILER_FLAGS -march=native)
+endif()
+list(JOIN TESSERA_COMPILER_FLAGS " " TESSERA_COMPILER_FLAGS)
+unset(build_type)

@@ -1,0 +1,12 @@
+# Foreign libraries, each behind one target: UMFPACK::UMFPACK, METIS::METIS, tessera_hdf5.
+
+find_package(UMFPACK 5.7 REQUIRED)
+find_package(METIS 5.1 REQUIRED)
+
+set(HDF5_PREFER_PARALLEL FALSE)
+find_package(HDF5 1.10 REQUIRED COMPONENTS Fortran HL)
+
+add_library(tessera_hdf5 INTERFACE)
+target_include_directories(tessera_hdf5 SYSTEM INTERFACE ${HDF5_Fortran_INCLUDE_DIRS})
+target_link_libraries(tessera_hdf5 INTERFACE
+  ${HDF5_Fortran_HL_LIBRARIES} ${HDF5_Fortran_LIBRARIES})
