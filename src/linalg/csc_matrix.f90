@@ -1,0 +1,101 @@
+!> Sparse matrices in compressed columns, laid out as UMFPACK reads them.
+module mpm_csc_matrix
+  use mpm_kinds, only: dp, ip
+  implicit none
+  private
+  public :: csc_matrix_t, add_block, find_entry, multiply, to_dense, zero_values
+
+  !> A square matrix in compressed columns. Bounds and contents of the index arrays start at
+  !! zero, so that they go to UMFPACK without a copy; rows ascend within a column.
+  type :: csc_matrix_t
+    integer     :: n = 0                 !! rows and columns
+    integer(ip) :: nnz = 0               !! stored entries
+    integer(ip), allocatable :: col_ptr(:) !! (0:n)      position of the first entry of a column
+    integer(ip), allocatable :: row(:)     !! (0:nnz-1)  row of an entry, from 0
+    real(dp), allocatable    :: val(:)     !! (0:nnz-1)  value of an entry
+  end type csc_matrix_t
+
+contains
+
+  !> Sets every stored entry to zero and keeps the pattern.
+  pure subroutine zero_values(matrix)
+    type(csc_matrix_t), intent(inout) :: matrix !! pattern stays
+
+    matrix%val = 0.0_dp
+  end subroutine zero_values
+
+  !> Position of an entry in `val`, by binary search in its column.
+  pure function find_entry(matrix, row, column) result(position)
+    type(csc_matrix_t), intent(in) :: matrix !! rows ascending within a column
+    integer, intent(in) :: row               !! equation number of the row, from 1
+    integer, intent(in) :: column            !! equation number of the column, from 1
+    integer(ip) :: position                  !! from 0; -1 outside the pattern
+    integer(ip) :: low, high, middle
+
+    position = -1_ip
+    low = matrix%col_ptr(column - 1)
+    high = matrix%col_ptr(column) - 1_ip
+    do while (low <= high)
+      middle = low + (high - low)/2_ip
+      if (matrix%row(middle) < row - 1) then
+        low = middle + 1_ip
+      else if (matrix%row(middle) > row - 1) then
+        high = middle - 1_ip
+      else
+        position = middle
+        return
+      end if
+    end do
+  end function find_entry
+
+  !> Adds a dense block at the given equations. Entries outside the pattern are left out: the
+  !! pattern must hold the block. Assembly writes through its position map; this is the reference.
+  pure subroutine add_block(matrix, equations, block)
+    type(csc_matrix_t), intent(inout) :: matrix !! receives the block
+    integer, intent(in)  :: equations(:)        !! (m)     equation numbers, 0 = leave out
+    real(dp), intent(in) :: block(:, :)         !! (m, m)  values
+    integer :: i, j
+    integer(ip) :: position
+
+    do j = 1, size(equations)
+      if (equations(j) == 0) cycle
+      do i = 1, size(equations)
+        if (equations(i) == 0) cycle
+        position = find_entry(matrix, equations(i), equations(j))
+        if (position >= 0_ip) matrix%val(position) = matrix%val(position) + block(i, j)
+      end do
+    end do
+  end subroutine add_block
+
+  !> Product y = A x.
+  pure subroutine multiply(matrix, x, y)
+    type(csc_matrix_t), intent(in) :: matrix !! A
+    real(dp), intent(in)  :: x(:)            !! (n)
+    real(dp), intent(out) :: y(:)            !! (n)
+    integer :: j
+    integer(ip) :: k
+
+    y = 0.0_dp
+    do j = 1, matrix%n
+      do k = matrix%col_ptr(j - 1), matrix%col_ptr(j) - 1_ip
+        y(matrix%row(k) + 1) = y(matrix%row(k) + 1) + matrix%val(k)*x(j)
+      end do
+    end do
+  end subroutine multiply
+
+  !> Dense copy, for tests and small problems.
+  pure function to_dense(matrix) result(dense)
+    type(csc_matrix_t), intent(in) :: matrix    !! sparse matrix
+    real(dp) :: dense(matrix%n, matrix%n)       !! the same matrix, zeros outside the pattern
+    integer :: j
+    integer(ip) :: k
+
+    dense = 0.0_dp
+    do j = 1, matrix%n
+      do k = matrix%col_ptr(j - 1), matrix%col_ptr(j) - 1_ip
+        dense(matrix%row(k) + 1, j) = matrix%val(k)
+      end do
+    end do
+  end function to_dense
+
+end module mpm_csc_matrix

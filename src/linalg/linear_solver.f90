@@ -1,0 +1,120 @@
+!> Direct solution of sparse linear systems: the one seam behind which solvers are exchanged.
+module mpm_linear_solver
+  use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_null_ptr, c_ptr
+  use mpm_csc_matrix, only: csc_matrix_t
+  use mpm_kinds, only: dp, ip
+  use mpm_openblas_binding, only: openblas_set_num_threads
+  use mpm_umfpack_binding, only: control_ordering, control_refinements, control_strategy, &
+    info_rcond, ordering_cholmod, status_ok, status_out_of_memory, strategy_symmetric, system_a, &
+    umfpack_control, umfpack_dl_defaults, umfpack_dl_free_numeric, umfpack_dl_free_symbolic, &
+    umfpack_dl_numeric, umfpack_dl_solve, umfpack_dl_symbolic, umfpack_info
+  implicit none
+  private
+  public :: linear_solver_t, analyse, factorize, solve, free_solver
+  public :: solver_ok, solver_singular, solver_memory
+
+  integer, parameter :: solver_ok = 0       !! done
+  integer, parameter :: solver_singular = 1 !! matrix singular to machine precision, or not finite
+  integer, parameter :: solver_memory = 2   !! out of memory
+
+  real(dp), parameter :: smallest_rcond = 1.0e-16_dp !! pivot ratio below which no digit is left
+
+  !> A solver with its foreign handles: release them with `free_solver`. Never copy one that
+  !! holds handles.
+  type :: linear_solver_t
+    type(c_ptr) :: symbolic = c_null_ptr                   !! analysis of the pattern
+    type(c_ptr) :: numeric = c_null_ptr                    !! factors
+    real(dp)    :: control(0:umfpack_control - 1) = 0.0_dp !! controls of UMFPACK
+    real(dp)    :: info(0:umfpack_info - 1) = 0.0_dp       !! statistics of UMFPACK's last call
+    real(dp)    :: rcond = 1.0_dp        !! smallest over largest pivot of the last factorisation [-]
+    integer     :: n_analyses = 0        !! analyses so far
+    integer     :: n_factorizations = 0  !! factorisations so far
+  end type linear_solver_t
+
+contains
+
+  !> Orders and analyses the pattern of a matrix. A pattern of structural symmetry is expected;
+  !! values may be unsymmetric. Factors of an earlier pattern are released.
+  subroutine analyse(solver, matrix, outcome)
+    type(linear_solver_t), intent(inout) :: solver !! receives the analysis
+    type(csc_matrix_t), intent(in) :: matrix       !! pattern; values only need to exist
+    integer, intent(out) :: outcome                !! solver_*
+    integer(ip) :: status
+
+    call free_solver(solver)
+    outcome = solver_ok
+    if (matrix%n == 0) return
+    ! More BLAS threads would make sums depend on their number and fight with OpenMP.
+    call openblas_set_num_threads(1_c_int)
+    call umfpack_dl_defaults(solver%control)
+    solver%control(control_strategy) = real(strategy_symmetric, dp)
+    solver%control(control_ordering) = real(ordering_cholmod, dp)
+    solver%control(control_refinements) = 0.0_dp
+    status = umfpack_dl_symbolic(int(matrix%n, ip), int(matrix%n, ip), matrix%col_ptr, &
+                                 matrix%row, matrix%val, solver%symbolic, solver%control, &
+                                 solver%info)
+    solver%n_analyses = solver%n_analyses + 1
+    outcome = outcome_of(status)
+  end subroutine analyse
+
+  !> Factorises a matrix whose pattern has been analysed.
+  !! Singular: a zero pivot, or pivots whose ratio leaves no digit, or values that are not finite.
+  subroutine factorize(solver, matrix, outcome)
+    type(linear_solver_t), intent(inout) :: solver !! analysed; receives the factors
+    type(csc_matrix_t), intent(in) :: matrix       !! same pattern as in `analyse`
+    integer, intent(out) :: outcome                !! solver_*
+    integer(ip) :: status
+
+    outcome = solver_ok
+    if (matrix%n == 0) return
+    if (c_associated(solver%numeric)) call umfpack_dl_free_numeric(solver%numeric)
+    status = umfpack_dl_numeric(matrix%col_ptr, matrix%row, matrix%val, solver%symbolic, &
+                                solver%numeric, solver%control, solver%info)
+    solver%n_factorizations = solver%n_factorizations + 1
+    solver%rcond = solver%info(info_rcond)
+    outcome = outcome_of(status)
+    if (outcome == solver_ok .and. .not. solver%rcond > smallest_rcond) outcome = solver_singular
+  end subroutine factorize
+
+  !> Solves A x = rhs with the factors of the last factorisation.
+  subroutine solve(solver, matrix, rhs, x, outcome)
+    type(linear_solver_t), intent(inout) :: solver !! factorised
+    type(csc_matrix_t), intent(in) :: matrix       !! A, as factorised
+    real(dp), intent(in)  :: rhs(:)                !! (n)
+    real(dp), intent(out) :: x(:)                  !! (n)
+    integer, intent(out)  :: outcome               !! solver_*
+    integer(ip) :: status
+
+    outcome = solver_ok
+    if (matrix%n == 0) return
+    status = umfpack_dl_solve(system_a, matrix%col_ptr, matrix%row, matrix%val, x, rhs, &
+                              solver%numeric, solver%control, solver%info)
+    outcome = outcome_of(status)
+  end subroutine solve
+
+  !> Releases the handles; harmless when there are none. Counts stay.
+  subroutine free_solver(solver)
+    type(linear_solver_t), intent(inout) :: solver !! without handles afterwards
+
+    if (c_associated(solver%numeric)) call umfpack_dl_free_numeric(solver%numeric)
+    if (c_associated(solver%symbolic)) call umfpack_dl_free_symbolic(solver%symbolic)
+    solver%numeric = c_null_ptr
+    solver%symbolic = c_null_ptr
+  end subroutine free_solver
+
+  !> Outcome that belongs to a status of UMFPACK.
+  pure function outcome_of(status) result(outcome)
+    integer(ip), intent(in) :: status !! return value of an umfpack_dl_* function
+    integer :: outcome                !! solver_*
+
+    select case (status)
+    case (status_ok)
+      outcome = solver_ok
+    case (status_out_of_memory)
+      outcome = solver_memory
+    case default
+      outcome = solver_singular
+    end select
+  end function outcome_of
+
+end module mpm_linear_solver

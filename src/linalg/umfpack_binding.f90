@@ -1,0 +1,96 @@
+!> C interfaces of UMFPACK 5 for real matrices with 64-bit indices; no logic.
+module mpm_umfpack_binding
+  use, intrinsic :: iso_c_binding, only: c_double, c_long, c_ptr
+  implicit none
+  private
+  public :: umfpack_dl_defaults, umfpack_dl_symbolic, umfpack_dl_numeric, umfpack_dl_solve
+  public :: umfpack_dl_free_symbolic, umfpack_dl_free_numeric
+  public :: umfpack_control, umfpack_info
+  public :: control_strategy, control_ordering, control_refinements
+  public :: strategy_symmetric, ordering_cholmod, info_rcond
+  public :: status_ok, status_singular, status_out_of_memory, system_a
+
+  ! Zero-based positions, as in umfpack.h.
+  integer, parameter :: umfpack_control = 20     !! length of the array of controls
+  integer, parameter :: umfpack_info = 90        !! length of the array of statistics
+  integer, parameter :: control_strategy = 5     !! position of UMFPACK_STRATEGY
+  integer, parameter :: control_refinements = 7  !! position of UMFPACK_IRSTEP
+  integer, parameter :: control_ordering = 10    !! position of UMFPACK_ORDERING
+  integer, parameter :: info_rcond = 67          !! position of UMFPACK_RCOND
+
+  integer, parameter :: strategy_symmetric = 3   !! UMFPACK_STRATEGY_SYMMETRIC
+  integer, parameter :: ordering_cholmod = 0     !! AMD, or METIS where AMD fills in much
+
+  integer(c_long), parameter :: status_ok = 0             !! UMFPACK_OK
+  integer(c_long), parameter :: status_singular = 1       !! UMFPACK_WARNING_singular_matrix
+  integer(c_long), parameter :: status_out_of_memory = -1 !! UMFPACK_ERROR_out_of_memory
+  integer(c_long), parameter :: system_a = 0              !! UMFPACK_A: A x = b
+
+  interface
+
+    !> Fills the controls with their defaults.
+    subroutine umfpack_dl_defaults(control) bind(c, name="umfpack_dl_defaults")
+      import :: c_double
+      real(c_double), intent(out) :: control(0:*) !! (0:umfpack_control-1)
+    end subroutine umfpack_dl_defaults
+
+    !> Orders the columns and analyses the pattern.
+    function umfpack_dl_symbolic(n_row, n_col, col_ptr, row, val, symbolic, control, info) &
+      bind(c, name="umfpack_dl_symbolic") result(status)
+      import :: c_double, c_long, c_ptr
+      integer(c_long), value :: n_row              !! rows
+      integer(c_long), value :: n_col              !! columns
+      integer(c_long), intent(in) :: col_ptr(0:*)  !! (0:n)
+      integer(c_long), intent(in) :: row(0:*)      !! (0:nnz-1)
+      real(c_double), intent(in)  :: val(0:*)      !! (0:nnz-1)
+      type(c_ptr), intent(out)    :: symbolic      !! handle of the analysis
+      real(c_double), intent(in)  :: control(0:*)  !! (0:umfpack_control-1)
+      real(c_double), intent(out) :: info(0:*)     !! (0:umfpack_info-1)
+      integer(c_long) :: status                    !! status_*
+    end function umfpack_dl_symbolic
+
+    !> Factorises the values.
+    function umfpack_dl_numeric(col_ptr, row, val, symbolic, numeric, control, info) &
+      bind(c, name="umfpack_dl_numeric") result(status)
+      import :: c_double, c_long, c_ptr
+      integer(c_long), intent(in) :: col_ptr(0:*)  !! (0:n)
+      integer(c_long), intent(in) :: row(0:*)      !! (0:nnz-1)
+      real(c_double), intent(in)  :: val(0:*)      !! (0:nnz-1)
+      type(c_ptr), value          :: symbolic      !! handle of the analysis
+      type(c_ptr), intent(out)    :: numeric       !! handle of the factors
+      real(c_double), intent(in)  :: control(0:*)  !! (0:umfpack_control-1)
+      real(c_double), intent(out) :: info(0:*)     !! (0:umfpack_info-1)
+      integer(c_long) :: status                    !! status_*
+    end function umfpack_dl_numeric
+
+    !> Solves with existing factors.
+    function umfpack_dl_solve(system, col_ptr, row, val, x, rhs, numeric, control, info) &
+      bind(c, name="umfpack_dl_solve") result(status)
+      import :: c_double, c_long, c_ptr
+      integer(c_long), value :: system             !! which system, system_a
+      integer(c_long), intent(in) :: col_ptr(0:*)  !! (0:n)
+      integer(c_long), intent(in) :: row(0:*)      !! (0:nnz-1)
+      real(c_double), intent(in)  :: val(0:*)      !! (0:nnz-1)
+      real(c_double), intent(out) :: x(*)          !! (n)  solution
+      real(c_double), intent(in)  :: rhs(*)        !! (n)  right-hand side
+      type(c_ptr), value          :: numeric       !! handle of the factors
+      real(c_double), intent(in)  :: control(0:*)  !! (0:umfpack_control-1)
+      real(c_double), intent(out) :: info(0:*)     !! (0:umfpack_info-1)
+      integer(c_long) :: status                    !! status_*
+    end function umfpack_dl_solve
+
+    !> Releases an analysis and sets its handle to null.
+    subroutine umfpack_dl_free_symbolic(symbolic) bind(c, name="umfpack_dl_free_symbolic")
+      import :: c_ptr
+      type(c_ptr), intent(inout) :: symbolic !! handle
+    end subroutine umfpack_dl_free_symbolic
+
+    !> Releases factors and sets their handle to null.
+    subroutine umfpack_dl_free_numeric(numeric) bind(c, name="umfpack_dl_free_numeric")
+      import :: c_ptr
+      type(c_ptr), intent(inout) :: numeric !! handle
+    end subroutine umfpack_dl_free_numeric
+
+  end interface
+
+end module mpm_umfpack_binding
