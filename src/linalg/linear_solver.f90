@@ -26,9 +26,9 @@ module mpm_linear_solver
     type(c_ptr) :: numeric = c_null_ptr                    !! factors
     real(dp)    :: control(0:umfpack_control - 1) = 0.0_dp !! controls of UMFPACK
     real(dp)    :: info(0:umfpack_info - 1) = 0.0_dp       !! statistics of UMFPACK's last call
-    real(dp)    :: rcond = 1.0_dp        !! smallest over largest pivot of the last factorisation [-]
-    integer     :: n_analyses = 0        !! analyses so far
-    integer     :: n_factorizations = 0  !! factorisations so far
+    real(dp)    :: rcond = 1.0_dp       !! smallest over largest pivot, last factorisation [-]
+    integer     :: n_analyses = 0       !! analyses so far
+    integer     :: n_factorizations = 0 !! factorisations so far
   end type linear_solver_t
 
 contains

@@ -1,0 +1,126 @@
+!> Equation numbers of active nodes and prescribed displacements.
+module mpm_dof_map
+  use mpm_amplitude, only: amplitude_t, step_fraction, time_increment_t
+  use mpm_kinds, only: dp
+  use mpm_mesh, only: mesh_t
+  implicit none
+  private
+  public :: constraint_t, dof_map_t
+  public :: add_solution, gather_free, number_dofs, prescribed_total
+
+  !> A prescribed displacement of a step: one direction, the nodes of one set.
+  type :: constraint_t
+    integer, allocatable :: node(:) !! nodes
+    integer  :: direction = 0       !! 1..n_dim
+    real(dp) :: value = 0.0_dp      !! total displacement at the end of the step [length]
+    real(dp) :: start = 0.0_dp      !! total displacement at the start of the step [length]
+    integer  :: amplitude = 0       !! index of the amplitude, 0 = linear ramp over the step
+    integer  :: card = 0            !! index of the card in the deck
+    integer  :: line = 0            !! data line of that card
+  end type constraint_t
+
+  !> Numbering of the unknowns of an increment.
+  type :: dof_map_t
+    integer :: n = 0                          !! unknowns
+    integer, allocatable  :: id(:, :)         !! (n_dim, n_node)  equation, 0 = fixed or inactive
+    logical, allocatable  :: fixed(:, :)      !! (n_dim, n_node)  .true. = prescribed
+    real(dp), allocatable :: prescribed(:, :) !! (n_dim, n_node)  in the increment [length]
+    logical, allocatable  :: active(:)        !! (n_node)         belongs to an active element
+  end type dof_map_t
+
+contains
+
+  !> Numbers the free displacements of active nodes, node by node, and sets the prescribed ones
+  !! of the increment. Where constraints meet, the last one holds.
+  pure subroutine number_dofs(dofs, mesh, active_element, constraints, increment, amplitudes)
+    type(dof_map_t), intent(out) :: dofs               !! numbering
+    type(mesh_t), intent(in) :: mesh                   !! connectivity
+    logical, intent(in) :: active_element(:)           !! (n_el)  hosts a point
+    type(constraint_t), intent(in) :: constraints(:)   !! in force in the step
+    type(time_increment_t), intent(in) :: increment    !! place of the increment in the step
+    type(amplitude_t), intent(in) :: amplitudes(:)     !! all amplitudes of the model
+    integer :: i, a, e
+
+    allocate (dofs%id(mesh%n_dim, mesh%n_node), source=0)
+    allocate (dofs%active(mesh%n_node), source=.false.)
+    do e = 1, mesh%n_el
+      if (active_element(e)) dofs%active(mesh%node(:, e)) = .true.
+    end do
+    allocate (dofs%fixed(mesh%n_dim, mesh%n_node), source=.false.)
+    allocate (dofs%prescribed(mesh%n_dim, mesh%n_node), source=0.0_dp)
+    do i = 1, size(constraints)
+      dofs%fixed(constraints(i)%direction, constraints(i)%node) = .true.
+      dofs%prescribed(constraints(i)%direction, constraints(i)%node) = &
+        prescribed_increment(constraints(i), increment, amplitudes)
+    end do
+    dofs%n = 0
+    do a = 1, mesh%n_node
+      if (.not. dofs%active(a)) cycle
+      do i = 1, mesh%n_dim
+        if (dofs%fixed(i, a)) cycle
+        dofs%n = dofs%n + 1
+        dofs%id(i, a) = dofs%n
+      end do
+    end do
+  end subroutine number_dofs
+
+  !> Total prescribed displacement at a step time: from the start to the value in a linear ramp,
+  !! or value times amplitude.
+  pure function prescribed_total(constraint, time, period, amplitudes) result(total)
+    type(constraint_t), intent(in) :: constraint   !! prescribed displacement
+    real(dp), intent(in) :: time                   !! step time
+    real(dp), intent(in) :: period                 !! length of the step
+    type(amplitude_t), intent(in) :: amplitudes(:) !! all amplitudes of the model
+    real(dp) :: total                              !! [length]
+    real(dp) :: base
+
+    base = merge(constraint%start, 0.0_dp, constraint%amplitude == 0)
+    total = base + (constraint%value - base) &
+            *step_fraction(constraint%amplitude, time, period, amplitudes)
+  end function prescribed_total
+
+  !> Prescribed displacement of an increment. The first one of a step departs from where the
+  !! nodes stand, so that an amplitude which does not begin there takes effect.
+  pure function prescribed_increment(constraint, increment, amplitudes) result(change)
+    type(constraint_t), intent(in) :: constraint     !! prescribed displacement
+    type(time_increment_t), intent(in) :: increment  !! place of the increment in the step
+    type(amplitude_t), intent(in) :: amplitudes(:)   !! all amplitudes of the model
+    real(dp) :: change                               !! [length]
+    real(dp) :: before
+
+    before = constraint%start
+    if (increment%start > 0.0_dp) before = prescribed_total(constraint, increment%start, &
+                                                            increment%period, amplitudes)
+    change = prescribed_total(constraint, increment%start + increment%size, increment%period, &
+                              amplitudes) - before
+  end function prescribed_increment
+
+  !> Adds a vector of unknowns to a nodal array; prescribed and inactive entries stay.
+  pure subroutine add_solution(dofs, x, nodal)
+    type(dof_map_t), intent(in) :: dofs        !! numbering
+    real(dp), intent(in)    :: x(:)            !! (n)
+    real(dp), intent(inout) :: nodal(:, :)     !! (n_dim, n_node)
+    integer :: i, a
+
+    do a = 1, size(dofs%id, 2)
+      do i = 1, size(dofs%id, 1)
+        if (dofs%id(i, a) > 0) nodal(i, a) = nodal(i, a) + x(dofs%id(i, a))
+      end do
+    end do
+  end subroutine add_solution
+
+  !> Picks the entries of the unknowns out of a nodal array.
+  pure subroutine gather_free(dofs, nodal, vector)
+    type(dof_map_t), intent(in) :: dofs        !! numbering
+    real(dp), intent(in)  :: nodal(:, :)       !! (n_dim, n_node)
+    real(dp), intent(out) :: vector(:)         !! (n)
+    integer :: i, a
+
+    do a = 1, size(dofs%id, 2)
+      do i = 1, size(dofs%id, 1)
+        if (dofs%id(i, a) > 0) vector(dofs%id(i, a)) = nodal(i, a)
+      end do
+    end do
+  end subroutine gather_free
+
+end module mpm_dof_map

@@ -1,0 +1,165 @@
+!> External nodal forces: weight, tractions on faces, forces on nodes.
+module mpm_external_force
+  use mpm_amplitude, only: amplitude_t, step_fraction, time_increment_t
+  use mpm_dof_map, only: dof_map_t
+  use mpm_kinds, only: dp
+  use mpm_material_points, only: points_t
+  use mpm_mesh, only: face_nodes, mesh_t
+  implicit none
+  private
+  public :: load_t, load_gravity, load_pressure, load_traction, load_nodal
+  public :: external_force, loaded_inactive_node, load_value, prepare_loads
+
+  integer, parameter :: load_gravity = 1  !! *DLOAD GRAV: acceleration on the mass of points
+  integer, parameter :: load_pressure = 2 !! *DSLOAD P: dead pressure, positive towards the body
+  integer, parameter :: load_traction = 3 !! *DSLOAD TRVEC: dead traction per initial area
+  integer, parameter :: load_nodal = 4    !! *CLOAD: force on each node of a set
+
+  !> One load of a step. The value in force at step time t is
+  !! start + (value - start)*t/period without an amplitude, value*amplitude(t) with one.
+  type :: load_t
+    integer  :: kind = 0                 !! load_*
+    integer, allocatable :: item(:)      !! gravity: elements of the initial mesh whose points
+                                         !! are loaded; nodal: nodes; surface: elements
+    integer, allocatable :: face(:)      !! surface: local face of each element
+    real(dp) :: value(3) = 0.0_dp        !! at the end of the step: acceleration, (p, 0, 0),
+                                         !! traction vector or nodal force vector
+    real(dp) :: start(3) = 0.0_dp        !! at the start of the step
+    integer  :: amplitude = 0            !! index of the amplitude, 0 = linear ramp over the step
+    integer  :: card = 0                 !! index of the card in the deck, for messages
+    logical, allocatable  :: point(:)    !! (n_point)  gravity: loaded points; by prepare_loads
+    real(dp), allocatable :: nodal(:, :) !! (n_dim, n_node)  others: force per unit value; by
+                                         !! prepare_loads
+  end type load_t
+
+contains
+
+  !> Fixes on the initial mesh what a load acts on: points for gravity, nodal forces per unit
+  !! value for the rest, which are dead loads. Call it before any point or node has moved.
+  pure subroutine prepare_loads(loads, mesh, points)
+    type(load_t), intent(inout) :: loads(:)  !! loads of a step
+    type(mesh_t), intent(in)    :: mesh      !! initial mesh
+    type(points_t), intent(in)  :: points    !! initial points with their hosts
+    integer :: i
+
+    do i = 1, size(loads)
+      if (loads(i)%kind == load_gravity) then
+        call mark_points(loads(i), mesh, points)
+        cycle
+      end if
+      if (allocated(loads(i)%nodal)) deallocate (loads(i)%nodal)
+      allocate (loads(i)%nodal(mesh%n_dim, mesh%n_node), source=0.0_dp)
+      if (loads(i)%kind == load_nodal) then
+        loads(i)%nodal(:, loads(i)%item) = 1.0_dp
+      else
+        call add_faces(loads(i), mesh)
+      end if
+    end do
+  end subroutine prepare_loads
+
+  !> Marks the points generated in the elements of a gravity load.
+  pure subroutine mark_points(load, mesh, points)
+    type(load_t), intent(inout) :: load    !! gravity
+    type(mesh_t), intent(in)    :: mesh    !! initial mesh
+    type(points_t), intent(in)  :: points  !! initial points with their hosts
+    logical, allocatable :: loaded(:)
+    integer :: p
+
+    allocate (loaded(0:mesh%n_el), source=.false.)
+    loaded(load%item) = .true.
+    loaded(0) = .false.
+    load%point = [(loaded(points%element(p)), p=1, points%n)]
+  end subroutine mark_points
+
+  !> Nodal forces of a unit pressure or of unit tractions, an equal share to each node of a face,
+  !! which is exact for a constant traction. The gradient of the shape function of the opposite
+  !! node, times the volume, is the inward normal times area over n_dim.
+  pure subroutine add_faces(load, mesh)
+    type(load_t), intent(inout) :: load !! pressure or traction; nodal is added to
+    type(mesh_t), intent(in)    :: mesh !! initial mesh
+    real(dp) :: share(mesh%n_dim)
+    integer :: node(mesh%n_dim)
+    integer :: a, e, i
+
+    do i = 1, size(load%item)
+      e = load%item(i)
+      share = mesh%volume(e)*mesh%grad_shape(:, load%face(i), e)
+      if (load%kind == load_traction) share = norm2(share)
+      node = face_nodes(mesh, e, load%face(i))
+      do a = 1, mesh%n_dim
+        load%nodal(:, node(a)) = load%nodal(:, node(a)) + share
+      end do
+    end do
+  end subroutine add_faces
+
+  !> External nodal forces at the end of an increment.
+  pure subroutine external_force(f, loads, mesh, points, increment, amplitudes)
+    real(dp), intent(out) :: f(:, :)                 !! (n_dim, n_node)  [force]
+    type(load_t), intent(in) :: loads(:)             !! prepared loads of the step
+    type(mesh_t), intent(in) :: mesh                 !! connectivity
+    type(points_t), intent(in) :: points             !! hosts, shape functions and masses
+    type(time_increment_t), intent(in) :: increment  !! place of the increment in the step
+    type(amplitude_t), intent(in) :: amplitudes(:)   !! all amplitudes of the model
+    real(dp) :: value(3)
+    integer :: i, j
+
+    f = 0.0_dp
+    do i = 1, size(loads)
+      value = load_value(loads(i), increment%start + increment%size, increment%period, amplitudes)
+      select case (loads(i)%kind)
+      case (load_gravity)
+        call add_weight(f, loads(i)%point, value(:mesh%n_dim), mesh, points)
+      case (load_pressure)
+        f = f + value(1)*loads(i)%nodal
+      case default
+        do j = 1, mesh%n_dim
+          f(j, :) = f(j, :) + value(j)*loads(i)%nodal(j, :)
+        end do
+      end select
+    end do
+  end subroutine external_force
+
+  !> Value of a load at a step time.
+  pure function load_value(load, time, period, amplitudes) result(value)
+    type(load_t), intent(in) :: load               !! load
+    real(dp), intent(in) :: time                   !! step time
+    real(dp), intent(in) :: period                 !! length of the step
+    type(amplitude_t), intent(in) :: amplitudes(:) !! all amplitudes of the model
+    real(dp) :: value(3)                           !! in the unit of load%value
+    real(dp) :: base(3)
+
+    base = merge(load%start, 0.0_dp, load%amplitude == 0)
+    value = base + (load%value - base)*step_fraction(load%amplitude, time, period, amplitudes)
+  end function load_value
+
+  !> Adds sum_p m_p S_a(x_p) g over the loaded points that have a host.
+  pure subroutine add_weight(f, loaded, acceleration, mesh, points)
+    real(dp), intent(inout) :: f(:, :)            !! (n_dim, n_node)  [force]
+    logical, intent(in)     :: loaded(:)          !! (n_point)  the load acts on this point
+    real(dp), intent(in)    :: acceleration(:)    !! (n_dim)  [length/time^2]
+    type(mesh_t), intent(in)   :: mesh            !! connectivity
+    type(points_t), intent(in) :: points          !! hosts, shape functions and masses
+    integer :: a, node, p
+
+    do p = 1, points%n
+      if (.not. loaded(p) .or. points%element(p) == 0) cycle
+      do a = 1, mesh%n_dim + 1
+        node = mesh%node(a, points%element(p))
+        f(:, node) = f(:, node) + points%mass(p)*points%shape(a, p)*acceleration
+      end do
+    end do
+  end subroutine add_weight
+
+  !> First node that carries a force but belongs to no active element.
+  pure function loaded_inactive_node(f, dofs) result(node)
+    real(dp), intent(in) :: f(:, :)     !! (n_dim, n_node)  external forces
+    type(dof_map_t), intent(in) :: dofs !! active nodes
+    integer :: node                     !! 0 if there is none
+
+    do node = 1, size(f, 2)
+      if (.not. dofs%active(node) .and. any(abs(f(:, node)) > 0.0_dp)) return
+    end do
+    node = 0
+  end function loaded_inactive_node
+
+end module mpm_external_force
