@@ -1,0 +1,246 @@
+!> Newton's method for one increment.
+module mpm_equilibrium
+  use mpm_assembly, only: apply_tangent, assemble_tangent
+  use mpm_dof_map, only: add_solution, gather_free
+  use mpm_kinds, only: dp
+  use mpm_linear_solver, only: factorize, solve, solver_memory, solver_ok
+  use mpm_system, only: body_t, evaluate, evaluation_inverted, evaluation_ok, system_t
+  implicit none
+  private
+  public :: find_equilibrium, outcome_text
+  public :: newton_settings_t, newton_report_t
+  public :: outcome_converged, outcome_inverted, outcome_material, outcome_stagnated
+  public :: outcome_iterations, outcome_singular, outcome_memory
+
+  integer, parameter :: outcome_converged = 0  !! equilibrium found
+  integer, parameter :: outcome_inverted = 1   !! an active element turned inside out
+  integer, parameter :: outcome_material = 2   !! the state update of a point failed
+  integer, parameter :: outcome_stagnated = 3  !! residual does not fall, or NaN
+  integer, parameter :: outcome_iterations = 4 !! too many iterations
+  integer, parameter :: outcome_singular = 5   !! tangent singular
+  integer, parameter :: outcome_memory = 6     !! linear solver out of memory
+
+  !> Controls of Newton's method (*CONTROLS).
+  type :: newton_settings_t
+    real(dp) :: tolerance = 1.0e-9_dp !! residual over external force and reactions [-]
+    integer  :: max_iterations = 20   !! corrections in one increment
+    integer  :: max_backtracks = 8    !! halvings of one correction
+  end type newton_settings_t
+
+  !> What Newton's method did in one attempt at an increment.
+  type :: newton_report_t
+    integer :: outcome = outcome_converged
+    integer :: n_iterations = 0
+    real(dp), allocatable :: residual(:)   !! (0:n_iterations)  relative residual [-], index 0 before the first correction
+    integer, allocatable  :: backtracks(:) !! (n_iterations)
+    real(dp), allocatable :: seconds(:, :) !! (5, n_iterations)  CPU: kinematics, stress, assembly, factorisation, solve [s]
+    integer :: worst_node = 0              !! node of the largest residual
+    integer :: worst_element = 0           !! inverted element or element of a failed point, 0 if none
+    integer :: worst_point = 0             !! failed point, 0 if none
+    integer, allocatable :: n_plastic(:)   !! (0:n_iterations)  points that flow
+  end type newton_report_t
+
+  !> The state of Newton's method between two corrections.
+  type :: newton_state_t
+    real(dp), allocatable :: residual(:) !! (n)  f_ext - f_int of the unknowns [force]
+    real(dp), allocatable :: x(:)        !! (n)  correction [length]
+    real(dp) :: norm = 0.0_dp            !! of the residual [force]
+    real(dp) :: scale = 0.0_dp           !! norm of external force and reactions [force]
+  end type newton_state_t
+
+contains
+
+  !> Newton's method with backtracking. On success system%u, system%trial and system%f_int hold
+  !! the solution; on failure nothing converged has changed. Source: theory.md (15).
+  subroutine find_equilibrium(system, report, body, settings)
+    type(system_t), intent(inout)       :: system  !! dofs, pattern, f_ext of this increment are set
+    type(newton_report_t), intent(out)  :: report
+    type(body_t), intent(in)            :: body
+    type(newton_settings_t), intent(in) :: settings
+    type(newton_state_t) :: newton
+    integer :: iteration
+
+    call open_report(report, settings%max_iterations)
+    allocate (newton%residual(system%dofs%n), newton%x(system%dofs%n))
+    system%u = 0.0_dp
+    call measure(newton, system, report, body, 0)
+    do iteration = 1, settings%max_iterations
+      if (report%outcome /= outcome_converged) exit
+      call correct(newton, system, report, body, iteration)
+      if (report%outcome /= outcome_converged) exit
+      call step(newton, system, report, body, settings, iteration)
+      if (report%outcome /= outcome_converged) exit
+      if (report%residual(iteration) <= settings%tolerance) exit
+      if (iteration == settings%max_iterations) report%outcome = outcome_iterations
+    end do
+    call find_worst_node(report, system)
+    call close_report(report)
+  end subroutine find_equilibrium
+
+  !> Tangent, factors and the correction x. The first one carries the prescribed displacement.
+  subroutine correct(newton, system, report, body, iteration)
+    type(newton_state_t), intent(inout)  :: newton
+    type(system_t), intent(inout)        :: system
+    type(newton_report_t), intent(inout) :: report
+    type(body_t), intent(in)             :: body
+    integer, intent(in)                  :: iteration
+    real(dp), allocatable :: force(:, :), rhs(:)
+    real(dp) :: clock(4)
+    integer :: outcome
+
+    report%n_iterations = iteration
+    call cpu_time(clock(1))
+    call assemble_tangent(system%tangent, system%map, body%mesh, body%patches, system%kinematics, system%sums)
+    rhs = newton%residual
+    if (iteration == 1) then
+      allocate (force, mold=system%u)
+      call apply_tangent(force, system%dofs%prescribed, system%map, body%mesh, body%patches, &
+                         system%kinematics, system%sums)
+      call gather_free(system%dofs, force, newton%x)
+      rhs = rhs - newton%x
+    end if
+    call cpu_time(clock(2))
+    call factorize(system%solver, system%tangent, outcome)
+    call cpu_time(clock(3))
+    if (outcome == solver_ok) call solve(system%solver, system%tangent, rhs, newton%x, outcome)
+    call cpu_time(clock(4))
+    report%seconds(3:5, iteration) = report%seconds(3:5, iteration) + (clock(2:4) - clock(1:3))
+    if (outcome /= solver_ok) then
+      report%outcome = merge(outcome_memory, outcome_singular, outcome == solver_memory)
+    end if
+  end subroutine correct
+
+  !> Applies the correction, from the second one on halved until the residual falls.
+  subroutine step(newton, system, report, body, settings, iteration)
+    type(newton_state_t), intent(inout)  :: newton
+    type(system_t), intent(inout)        :: system
+    type(newton_report_t), intent(inout) :: report
+    type(body_t), intent(in)             :: body
+    type(newton_settings_t), intent(in)  :: settings
+    integer, intent(in)                  :: iteration
+    real(dp), allocatable :: u(:, :)
+    real(dp) :: norm, length
+    integer :: n_halved
+
+    u = system%u
+    norm = newton%norm
+    length = 1.0_dp
+    if (iteration == 1) u = u + system%dofs%prescribed
+    do n_halved = 0, settings%max_backtracks
+      system%u = u
+      call add_solution(system%dofs, length*newton%x, system%u)
+      report%outcome = outcome_converged
+      call measure(newton, system, report, body, iteration)
+      report%backtracks(iteration) = n_halved
+      if (iteration == 1) return
+      if (report%outcome == outcome_converged) then
+        if (newton%norm < norm .or. report%residual(iteration) <= settings%tolerance) return
+      end if
+      length = 0.5_dp*length
+    end do
+    if (report%outcome == outcome_converged) report%outcome = outcome_stagnated
+  end subroutine step
+
+  !> Evaluates forces at system%u and the residual there.
+  subroutine measure(newton, system, report, body, iteration)
+    type(newton_state_t), intent(inout)  :: newton
+    type(system_t), intent(inout)        :: system
+    type(newton_report_t), intent(inout) :: report
+    type(body_t), intent(in)             :: body
+    integer, intent(in)                  :: iteration
+    real(dp) :: before(2)
+    integer :: outcome
+
+    before = system%seconds
+    call evaluate(system, body, outcome)
+    ! The evaluation before the first correction belongs to the first iteration.
+    associate (seconds => report%seconds(1:2, max(iteration, 1)))
+      seconds = seconds + (system%seconds - before)
+    end associate
+    if (outcome /= evaluation_ok) then
+      report%outcome = merge(outcome_inverted, outcome_material, outcome == evaluation_inverted)
+      report%worst_element = system%worst_element
+      report%worst_point = system%worst_point
+      return
+    end if
+    call gather_free(system%dofs, system%f_ext - system%f_int, newton%residual)
+    newton%norm = norm2(newton%residual)
+    newton%scale = norm2(merge(system%f_int, system%f_ext, system%dofs%fixed .and. &
+                               spread(system%dofs%active, 1, size(system%u, 1))))
+    report%residual(iteration) = relative(newton%norm, newton%scale)
+    report%n_plastic(iteration) = system%sums%n_plastic
+    if (.not. newton%norm <= huge(1.0_dp)) report%outcome = outcome_stagnated
+  end subroutine measure
+
+  !> Residual over external force and reactions; 0 when both vanish.
+  pure function relative(norm, scale) result(ratio)
+    real(dp), intent(in) :: norm, scale !! [force]
+    real(dp) :: ratio                   !! [-]
+
+    if (norm <= 0.0_dp) then
+      ratio = 0.0_dp
+    else
+      ratio = norm/max(scale, tiny(1.0_dp)/epsilon(1.0_dp), norm*1.0e-30_dp)
+    end if
+  end function relative
+
+  !> Node with the largest residual.
+  pure subroutine find_worst_node(report, system)
+    type(newton_report_t), intent(inout) :: report
+    type(system_t), intent(in)           :: system
+    real(dp) :: largest, here
+    integer :: a
+
+    largest = -1.0_dp
+    do a = 1, size(system%u, 2)
+      here = norm2(merge(system%f_ext(:, a) - system%f_int(:, a), 0.0_dp, system%dofs%id(:, a) > 0))
+      if (here > largest) then
+        largest = here
+        report%worst_node = a
+      end if
+    end do
+  end subroutine find_worst_node
+
+  !> Room for all iterations.
+  pure subroutine open_report(report, max_iterations)
+    type(newton_report_t), intent(inout) :: report
+    integer, intent(in) :: max_iterations
+
+    allocate (report%residual(0:max_iterations), source=0.0_dp)
+    allocate (report%n_plastic(0:max_iterations), source=0)
+    allocate (report%backtracks(max_iterations), source=0)
+    allocate (report%seconds(5, max_iterations), source=0.0_dp)
+  end subroutine open_report
+
+  !> Cuts the room to the iterations made.
+  pure subroutine close_report(report)
+    type(newton_report_t), intent(inout) :: report
+    real(dp), allocatable :: residual(:)
+    integer, allocatable :: n_plastic(:)
+
+    allocate (residual(0:report%n_iterations), source=report%residual(0:report%n_iterations))
+    call move_alloc(residual, report%residual)
+    allocate (n_plastic(0:report%n_iterations), source=report%n_plastic(0:report%n_iterations))
+    call move_alloc(n_plastic, report%n_plastic)
+    report%backtracks = report%backtracks(:report%n_iterations)
+    report%seconds = report%seconds(:, :report%n_iterations)
+  end subroutine close_report
+
+  !> What an outcome means, for messages.
+  pure function outcome_text(outcome) result(text)
+    integer, intent(in) :: outcome !! outcome_*
+    character(:), allocatable :: text
+
+    select case (outcome)
+    case (outcome_converged); text = "converged"
+    case (outcome_inverted); text = "an element turned inside out"
+    case (outcome_material); text = "the stress update of a material point failed"
+    case (outcome_stagnated); text = "the residual did not fall"
+    case (outcome_iterations); text = "too many iterations"
+    case (outcome_singular); text = "the tangent is singular"
+    case (outcome_memory); text = "the linear solver ran out of memory"
+    case default; text = "unknown outcome"
+    end select
+  end function outcome_text
+
+end module mpm_equilibrium

@@ -1,0 +1,115 @@
+!> Everything that one increment needs beside the model: unknowns, trial state, tangent.
+module mpm_system
+  use mpm_assembly, only: internal_force
+  use mpm_constitutive_update, only: allocate_sums, element_sums_t, update_points
+  use mpm_csc_matrix, only: csc_matrix_t
+  use mpm_dof_map, only: dof_map_t
+  use mpm_fbar, only: project_onto_patches
+  use mpm_kinds, only: dp
+  use mpm_kinematics, only: allocate_kinematics, compute_kinematics, kinematics_t
+  use mpm_linear_solver, only: free_solver, linear_solver_t
+  use mpm_material, only: material_t
+  use mpm_material_points, only: point_state_t, points_t
+  use mpm_mesh, only: mesh_t
+  use mpm_patches, only: patches_t
+  use mpm_sparsity, only: assembly_map_t
+  implicit none
+  private
+  public :: system_t, body_t, evaluate, find_active, free_system, open_system
+  public :: evaluation_ok, evaluation_inverted, evaluation_failed
+
+  integer, parameter :: evaluation_ok = 0       !! forces are there
+  integer, parameter :: evaluation_inverted = 1 !! an active element is inside out
+  integer, parameter :: evaluation_failed = 2   !! the state update of a point failed
+
+  !> The body and its background: what the increments change.
+  type :: body_t
+    type(mesh_t)    :: mesh                     !! at the start of the increment
+    type(patches_t) :: patches                  !! over which F-bar averages; single elements: standard method
+    type(points_t)  :: points                   !! converged
+    type(material_t), allocatable :: material(:)
+  end type body_t
+
+  !> Work space of an increment. It holds foreign handles: release it with `free_system`.
+  type :: system_t
+    logical, allocatable  :: active(:)      !! (n_el)           hosts a point
+    integer, allocatable  :: element(:)     !! (n_active)       active elements, ascending
+    real(dp), allocatable :: u(:, :)        !! (n_dim, n_node)  displacement of the increment [length]
+    real(dp), allocatable :: f_int(:, :)    !! (n_dim, n_node)  internal force [force]
+    real(dp), allocatable :: f_ext(:, :)    !! (n_dim, n_node)  applied force [force]
+    type(dof_map_t)       :: dofs
+    type(kinematics_t)    :: kinematics
+    type(element_sums_t)  :: sums
+    type(point_state_t)   :: trial
+    type(assembly_map_t)  :: map
+    type(csc_matrix_t)    :: tangent
+    type(linear_solver_t) :: solver
+    integer :: worst_element = 0            !! inverted element or element of the failed point
+    integer :: worst_point = 0              !! failed point
+    real(dp) :: seconds(2) = 0.0_dp         !! CPU of all evaluations: kinematics, stress with internal force [s]
+  end type system_t
+
+contains
+
+  !> Allocates the work space.
+  subroutine open_system(system, body)
+    type(system_t), intent(out) :: system
+    type(body_t), intent(in)    :: body
+
+    allocate (system%active(body%mesh%n_el), source=.false.)
+    allocate (system%element(0))
+    allocate (system%u(body%mesh%n_dim, body%mesh%n_node), source=0.0_dp)
+    allocate (system%f_int, source=system%u)
+    allocate (system%f_ext, source=system%u)
+    call allocate_kinematics(system%kinematics, body%mesh)
+    call allocate_sums(system%sums, body%mesh%n_el)
+    system%trial = body%points%state
+  end subroutine open_system
+
+  !> Releases the factors of the linear solver.
+  subroutine free_system(system)
+    type(system_t), intent(inout) :: system
+
+    call free_solver(system%solver)
+  end subroutine free_system
+
+  !> Active elements are those that host a point. Precondition: points are grouped by element.
+  pure subroutine find_active(system, points)
+    type(system_t), intent(inout) :: system
+    type(points_t), intent(in)    :: points
+    integer :: e
+
+    system%active = points%first(2:) > points%first(:size(points%first) - 1)
+    system%element = pack([(e, e=1, size(system%active))], system%active)
+  end subroutine find_active
+
+  !> Trial state, element sums and internal force at the displacement system%u.
+  subroutine evaluate(system, body, outcome)
+    type(system_t), intent(inout) :: system
+    type(body_t), intent(in)      :: body
+    integer, intent(out)          :: outcome !! evaluation_*
+    real(dp) :: clock(3)
+
+    outcome = evaluation_ok
+    call cpu_time(clock(1))
+    call compute_kinematics(system%kinematics, system%worst_element, body%mesh, system%element, system%u)
+    if (system%worst_element > 0) then
+      outcome = evaluation_inverted
+      return
+    end if
+    call project_onto_patches(system%kinematics, body%mesh, body%patches, system%active)
+    call cpu_time(clock(2))
+    call update_points(system%trial, system%sums, body%points, body%material, system%kinematics, &
+                       system%element)
+    system%worst_point = system%sums%failed_point
+    if (system%worst_point > 0) then
+      outcome = evaluation_failed
+      system%worst_element = body%points%element(system%worst_point)
+      return
+    end if
+    call internal_force(system%f_int, body%mesh, system%kinematics, system%sums, system%element)
+    call cpu_time(clock(3))
+    system%seconds = system%seconds + (clock(2:3) - clock(1:2))
+  end subroutine evaluate
+
+end module mpm_system
