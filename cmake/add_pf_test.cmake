@@ -12,30 +12,27 @@ function(add_pf_test)
   endif()
 
   set(name test_${arg_LAYER})
+  set(libraries tessera_${arg_LAYER} tessera_build ${arg_LINKS})
   set(suites ${arg_SOURCES})
   list(FILTER suites INCLUDE REGEX "\\.pf$")
   set(helpers ${arg_SOURCES})
   list(FILTER helpers EXCLUDE REGEX "\\.pf$")
 
   if(PFUNIT_FOUND)
-    add_pfunit_ctest(${name} TEST_SOURCES ${suites} OTHER_SOURCES ${helpers})
+    add_pfunit_ctest(${name}
+      TEST_SOURCES ${suites} OTHER_SOURCES ${helpers} LINK_LIBRARIES ${libraries})
   else()
-    add_stand_in_test(${name} "${suites}" "${helpers}")
+    add_stand_in_test(${name} "${suites}" "${helpers}" "${libraries}")
   endif()
-  set_target_properties(${name} PROPERTIES
-    Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/modules")
-  target_include_directories(${name} PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/modules")
-  target_link_libraries(${name} PRIVATE tessera_${arg_LAYER} tessera_build ${arg_LINKS})
   set_tests_properties(${name} PROPERTIES
-    WORKING_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}"
     ENVIRONMENT "TESSERA_SOURCE_DIR=${PROJECT_SOURCE_DIR}")
 endfunction()
 
 # The same with our own preprocessor: the suites become one Fortran file each, and a driver.
-function(add_stand_in_test name suites helpers)
+function(add_stand_in_test name suites helpers libraries)
   set(preprocessor "${PROJECT_SOURCE_DIR}/tests/pf/pf_to_fortran.py")
-  set(generated)
   set(inputs)
+  set(generated)
   foreach(suite IN LISTS suites)
     get_filename_component(stem "${suite}" NAME_WE)
     set(input "${CMAKE_CURRENT_SOURCE_DIR}/${suite}")
@@ -55,6 +52,9 @@ function(add_stand_in_test name suites helpers)
     VERBATIM)
 
   add_executable(${name} ${helpers} ${generated} "${driver}")
-  target_link_libraries(${name} PRIVATE tessera_funit tessera_warnings)
-  add_test(NAME ${name} COMMAND ${name})
+  set(module_dir "${CMAKE_CURRENT_BINARY_DIR}/modules")
+  set_target_properties(${name} PROPERTIES Fortran_MODULE_DIRECTORY "${module_dir}")
+  target_include_directories(${name} PRIVATE "${module_dir}")
+  target_link_libraries(${name} PRIVATE ${libraries} tessera_funit tessera_warnings)
+  add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}")
 endfunction()
