@@ -97,9 +97,11 @@ def dimensions(rank):
 
 
 def types_of(relation):
-    """Only numbers have an order."""
-    if relation in ("Equal", "NotEqual"):
+    """Only numbers have an order; pFUnit has no "not equal" for text."""
+    if relation == "Equal":
         return {**REAL, **INTEGER, **LOGICAL, **CHARACTER}
+    if relation == "NotEqual":
+        return {**REAL, **INTEGER, **LOGICAL}
     return {**REAL, **INTEGER}
 
 

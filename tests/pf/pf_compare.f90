@@ -119,7 +119,7 @@ contains
     end do
   end subroutine compare_logical
 
-  ! As Fortran compares: blanks at the end do not count.
+  ! As Fortran compares: blanks at the end do not count. pFUnit ignores those in front as well.
   subroutine compare_character(expected, actual, a)
     character(*), intent(in) :: expected(:), actual(:)
     type(assertion_t), intent(in) :: a
@@ -129,19 +129,19 @@ contains
     if (.not. conformable(a)) return
     do i = 1, size(actual)
       j = min(i, size(expected))
-      if ((expected(j) == actual(i)) .eqv. a%op == op_eq) cycle
+      if (expected(j) == actual(i)) cycle
       call fail(a, i, trim(expected(j)), trim(actual(i)), "")
       return
     end do
   end subroutine compare_character
 
-  ! A NaN fulfils nothing but "not equal"; an infinity equals only itself.
+  ! A NaN fulfils nothing, not even "not equal"; an infinity equals only itself.
   pure logical function holds_real(a, expected, actual) result(holds)
     type(assertion_t), intent(in) :: a
     real(real64), intent(in) :: expected, actual
 
     if (is_nan(expected) .or. is_nan(actual)) then
-      holds = a%op == op_ne
+      holds = .false.
     else if (a%op > op_ne .or. .not. (is_finite(expected) .and. is_finite(actual))) then
       holds = holds_order(a%op, expected < actual, expected > actual)
     else
