@@ -1,0 +1,271 @@
+!> Material points: position, host element, history and stress, as structure of arrays.
+module mpm_material_points
+  use mpm_error, only: error_t, exit_model, make_error
+  use mpm_kinds, only: dp
+  use mpm_mesh, only: mesh_t
+  use mpm_point_rules, only: available_rules, point_rule
+  use mpm_text, only: integer_text
+  implicit none
+  private
+  public :: points_t, point_state_t, n_hardening
+  public :: allocate_points, allocate_state, copy_state, generate_points, group_points
+  public :: centre_of_mass, nearest_point, total_mass, total_volume
+  public :: status_inside, status_extrapolated, status_frozen, status_removed
+
+  integer, parameter :: n_hardening = 1         !! hardening variables of a point: 1 = PEEQ
+  integer, parameter :: status_inside = 0       !! inside its host element
+  integer, parameter :: status_extrapolated = 1 !! just outside the mesh, kept by its host
+  integer, parameter :: status_frozen = 2       !! lost, kept in the file, without host
+  integer, parameter :: status_removed = 3      !! lost and taken out, without host
+
+  !> Everything of a point that changes during Newton: one converged, one trial copy.
+  !! Voigt order 11, 22, 33, 12, 23, 13, tensor components (never engineering shear).
+  type :: point_state_t
+    real(dp), allocatable :: strain_e(:, :)    !! (6, n)  elastic logarithmic strain [-]
+    real(dp), allocatable :: left_cauchy_green_e_m1(:, :) !! (6, n)  b_e - 1 = exp(2 strain_e) - 1 [-]
+    real(dp), allocatable :: hardening(:, :)   !! (n_hardening, n)  accumulated plastic strain [-]
+    real(dp), allocatable :: cauchy(:, :)      !! (6, n)  Cauchy stress [force/length^2]
+    real(dp), allocatable :: jacobian_bar(:)   !! (n)     product of all det dFbar [-]
+  end type point_state_t
+
+  !> The points; item index last.
+  type :: points_t
+    integer :: n = 0
+    real(dp), allocatable :: x(:, :)        !! (n_dim, n)    position [length]
+    real(dp), allocatable :: u(:, :)        !! (n_dim, n)    total displacement [length]
+    integer, allocatable  :: id(:)          !! (n)           constant over the run
+    integer, allocatable  :: element(:)     !! (n)           host element, 0 when frozen or removed
+    integer, allocatable  :: material(:)    !! (n)           index of the material
+    integer, allocatable  :: status(:)      !! (n)           status_*
+    real(dp), allocatable :: shape(:, :)    !! (n_dim+1, n)  shape functions of the host
+    real(dp), allocatable :: volume_0(:)    !! (n)           reference volume (2-D: area)
+    real(dp), allocatable :: volume(:)      !! (n)           volume, converged
+    real(dp), allocatable :: mass(:)        !! (n)           density times reference volume
+    real(dp), allocatable :: def_grad(:, :, :) !! (3, 3, n)  F, converged
+    integer, allocatable  :: first(:)       !! (n_el+1)      points of element e are order(first(e):first(e+1)-1)
+    integer, allocatable  :: order(:)       !! (n with a host)
+    type(point_state_t)   :: state          !! converged state
+  end type points_t
+
+contains
+
+  !> Fills elements with points by a rule and appends them to the points there are.
+  !! An element that already holds points, or stands twice in the list, is a model error.
+  pure subroutine generate_points(points, mesh, elements, material, n_per_element, density, error)
+    type(points_t), intent(inout) :: points          !! points, out the new ones appended
+    type(mesh_t), intent(in) :: mesh                 !! mesh with gradients and volumes
+    integer, intent(in)      :: elements(:)          !! (m)  linear elements to fill
+    integer, intent(in)      :: material             !! index of the material
+    integer, intent(in)      :: n_per_element        !! points per element
+    real(dp), intent(in)     :: density              !! mass per reference volume
+    type(error_t), allocatable, intent(out) :: error !! no such rule, or an element filled twice
+
+    real(dp), allocatable :: barycentric(:, :), weight(:)
+    logical :: found
+    integer :: i, k, n_old, p
+
+    call point_rule(mesh%n_dim, n_per_element, barycentric, weight, found)
+    if (.not. found) then
+      call make_error(error, exit_model, integer_text(n_per_element)// &
+        " points per element: expected "//available_rules(mesh%n_dim))
+      return
+    end if
+    call check_empty(points, mesh, elements, error)
+    if (allocated(error)) return
+    n_old = points%n
+    call append_blank_points(points, mesh%n_dim, n_per_element*size(elements))
+    do i = 1, size(elements)
+      do k = 1, n_per_element
+        p = n_old + n_per_element*(i - 1) + k
+        points%element(p) = elements(i)
+        points%shape(:, p) = barycentric(:, k)
+        points%x(:, p) = matmul(mesh%x(:, mesh%node(:, elements(i))), barycentric(:, k))
+        points%volume_0(p) = weight(k)*mesh%volume(elements(i))
+      end do
+    end do
+    points%material(n_old + 1:) = material
+    points%volume(n_old + 1:) = points%volume_0(n_old + 1:)
+    points%mass(n_old + 1:) = density*points%volume_0(n_old + 1:)
+    call group_points(points, mesh%n_el)
+  end subroutine generate_points
+
+  !> None of the elements holds a point, and none stands twice in the list.
+  pure subroutine check_empty(points, mesh, elements, error)
+    type(points_t), intent(in) :: points             !! points there are
+    type(mesh_t), intent(in)   :: mesh               !! mesh
+    integer, intent(in)        :: elements(:)        !! (m)  linear elements to fill
+    type(error_t), allocatable, intent(out) :: error !! the first filled element
+
+    logical, allocatable :: filled(:)
+    integer :: i, p
+
+    allocate (filled(mesh%n_el), source=.false.)
+    do p = 1, points%n
+      if (points%element(p) > 0) filled(points%element(p)) = .true.
+    end do
+    do i = 1, size(elements)
+      if (filled(elements(i))) then
+        call make_error(error, exit_model, "element "// &
+          integer_text(mesh%parent_label(mesh%parent(elements(i))))// &
+          " already holds material points: expected regions that do not overlap")
+        return
+      end if
+      filled(elements(i)) = .true.
+    end do
+  end subroutine check_empty
+
+  !> Makes room for more points; the old ones keep their values, the new ones are undeformed,
+  !! without stress and without host.
+  pure subroutine append_blank_points(points, n_dim, n_new)
+    type(points_t), intent(inout) :: points !! points, out n_new more
+    integer, intent(in)           :: n_dim  !! 2 or 3
+    integer, intent(in)           :: n_new  !! points to add
+
+    type(points_t) :: longer
+
+    call allocate_points(longer, n_dim, points%n + n_new)
+    associate (n => points%n)
+      if (n > 0) then
+        longer%x(:, :n) = points%x
+        longer%u(:, :n) = points%u
+        longer%element(:n) = points%element
+        longer%material(:n) = points%material
+        longer%status(:n) = points%status
+        longer%shape(:, :n) = points%shape
+        longer%volume_0(:n) = points%volume_0
+        longer%volume(:n) = points%volume
+        longer%mass(:n) = points%mass
+        longer%def_grad(:, :, :n) = points%def_grad
+        longer%state%strain_e(:, :n) = points%state%strain_e
+        longer%state%left_cauchy_green_e_m1(:, :n) = points%state%left_cauchy_green_e_m1
+        longer%state%hardening(:, :n) = points%state%hardening
+        longer%state%cauchy(:, :n) = points%state%cauchy
+        longer%state%jacobian_bar(:n) = points%state%jacobian_bar
+      end if
+    end associate
+    points = longer
+  end subroutine append_blank_points
+
+  !> Allocates undeformed points without stress and without host, numbered from 1.
+  pure subroutine allocate_points(points, n_dim, n)
+    type(points_t), intent(out) :: points !! points
+    integer, intent(in)         :: n_dim  !! 2 or 3
+    integer, intent(in)         :: n      !! number of points
+
+    integer :: i, p
+
+    points%n = n
+    points%id = [(p, p=1, n)]
+    allocate (points%x(n_dim, n), points%u(n_dim, n), points%shape(n_dim + 1, n), source=0.0_dp)
+    allocate (points%element(n), points%material(n), source=0)
+    allocate (points%status(n), source=status_inside)
+    allocate (points%volume_0(n), points%volume(n), points%mass(n), source=0.0_dp)
+    allocate (points%def_grad(3, 3, n), source=0.0_dp)
+    do i = 1, 3
+      points%def_grad(i, i, :) = 1.0_dp
+    end do
+    call allocate_state(points%state, n)
+  end subroutine allocate_points
+
+  !> Allocates the state of undeformed points without stress.
+  pure subroutine allocate_state(state, n)
+    type(point_state_t), intent(out) :: state !! state
+    integer, intent(in)              :: n     !! number of points
+
+    allocate (state%strain_e(6, n), state%left_cauchy_green_e_m1(6, n), source=0.0_dp)
+    allocate (state%hardening(n_hardening, n), state%cauchy(6, n), source=0.0_dp)
+    allocate (state%jacobian_bar(n), source=1.0_dp)
+  end subroutine allocate_state
+
+  !> Copies a state into one that is already allocated, without new memory.
+  pure subroutine copy_state(target, source)
+    type(point_state_t), intent(inout) :: target !! state of the same number of points, overwritten
+    type(point_state_t), intent(in)    :: source !! state to copy
+
+    target%strain_e(:, :) = source%strain_e
+    target%left_cauchy_green_e_m1(:, :) = source%left_cauchy_green_e_m1
+    target%hardening(:, :) = source%hardening
+    target%cauchy(:, :) = source%cauchy
+    target%jacobian_bar(:) = source%jacobian_bar
+  end subroutine copy_state
+
+  !> Groups the points that have a host by it, in ascending order within an element.
+  pure subroutine group_points(points, n_el)
+    type(points_t), intent(inout) :: points !! in element, out first and order
+    integer, intent(in)           :: n_el   !! elements of the mesh
+
+    integer, allocatable :: next(:)
+    integer :: e, p
+
+    if (allocated(points%first)) deallocate (points%first)
+    if (allocated(points%order)) deallocate (points%order)
+    allocate (points%first(n_el + 1), source=0)
+    allocate (points%order(count(points%element > 0)))
+    do p = 1, points%n
+      e = points%element(p)
+      if (e > 0) points%first(e + 1) = points%first(e + 1) + 1
+    end do
+    points%first(1) = 1
+    do e = 1, n_el
+      points%first(e + 1) = points%first(e + 1) + points%first(e)
+    end do
+    next = points%first
+    do p = 1, points%n
+      e = points%element(p)
+      if (e == 0) cycle
+      points%order(next(e)) = p
+      next(e) = next(e) + 1
+    end do
+  end subroutine group_points
+
+  !> Volume of all points that have a host (2-D: area).
+  pure real(dp) function total_volume(points) result(volume)
+    type(points_t), intent(in) :: points !! points
+
+    volume = sum(points%volume, mask=points%element > 0)
+  end function total_volume
+
+  !> Mass of all points that have a host.
+  pure real(dp) function total_mass(points) result(mass)
+    type(points_t), intent(in) :: points !! points
+
+    mass = sum(points%mass, mask=points%element > 0)
+  end function total_mass
+
+  !> Centre of mass of all points that have a host; of their volume where they have no mass.
+  pure function centre_of_mass(points) result(centre)
+    type(points_t), intent(in) :: points     !! points
+    real(dp) :: centre(size(points%x, 1))    !! (n_dim)  position, zero without points [length]
+
+    real(dp), allocatable :: weight(:)
+    integer :: i
+
+    weight = merge(points%mass, 0.0_dp, points%element > 0)
+    if (sum(weight) <= 0.0_dp) weight = merge(points%volume, 0.0_dp, points%element > 0)
+    centre = 0.0_dp
+    if (sum(weight) <= 0.0_dp) return
+    do i = 1, size(centre)
+      centre(i) = sum(weight*points%x(i, :))/sum(weight)
+    end do
+  end function centre_of_mass
+
+  !> The point with a host nearest to a position, of equally near ones the first; 0 without points.
+  pure integer function nearest_point(points, x) result(nearest)
+    type(points_t), intent(in) :: points !! points
+    real(dp), intent(in)       :: x(:)   !! (n_dim)  position [length]
+
+    real(dp) :: distance, least
+    integer :: p
+
+    nearest = 0
+    least = huge(1.0_dp)
+    do p = 1, points%n
+      if (points%element(p) == 0) cycle
+      distance = sum((points%x(:, p) - x)**2)
+      if (distance >= least) cycle
+      nearest = p
+      least = distance
+    end do
+  end function nearest_point
+
+end module mpm_material_points
