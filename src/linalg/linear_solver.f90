@@ -1,5 +1,6 @@
 !> Direct solution of sparse linear systems: the one seam behind which solvers are exchanged.
 module mpm_linear_solver
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_null_ptr, c_ptr
   use mpm_csc_matrix, only: csc_matrix_t
   use mpm_kinds, only: dp, ip
@@ -68,6 +69,9 @@ contains
     outcome = solver_ok
     if (matrix%n == 0) return
     if (c_associated(solver%numeric)) call umfpack_dl_free_numeric(solver%numeric)
+    solver%rcond = 0.0_dp
+    outcome = solver_singular
+    if (.not. all(ieee_is_finite(matrix%val))) return
     status = umfpack_dl_numeric(matrix%col_ptr, matrix%row, matrix%val, solver%symbolic, &
                                 solver%numeric, solver%control, solver%info)
     solver%n_factorizations = solver%n_factorizations + 1
