@@ -29,8 +29,8 @@ module mpm_mesh_generator
     [1, 2, 5, 2, 4, 5, 4, 3, 5, 3, 1, 5], [3, 4])
   !> Four tetrahedra at every second corner and one between them, two ways.
   integer, parameter :: five_tetrahedra(4, 5, 2) = reshape( &
-    [2, 4, 1, 6, 3, 1, 4, 7, 5, 6, 1, 7, 8, 4, 7, 6, 1, 4, 7, 6, &
-     1, 2, 3, 5, 4, 3, 2, 8, 6, 5, 8, 2, 7, 8, 5, 3, 2, 3, 8, 5], [4, 5, 2])
+    [2, 4, 1, 6, 3, 1, 4, 7, 5, 6, 1, 7, 8, 4, 6, 7, 1, 4, 7, 6, &
+     1, 2, 3, 5, 4, 3, 2, 8, 6, 5, 8, 2, 7, 8, 5, 3, 2, 3, 5, 8], [4, 5, 2])
   !> Kuhn's six tetrahedra around the diagonal from the first to the last corner.
   integer, parameter :: six_tetrahedra(4, 6) = reshape( &
     [1, 2, 4, 8, 1, 6, 2, 8, 1, 4, 3, 8, 1, 3, 7, 8, 1, 5, 6, 8, 1, 7, 5, 8], [4, 6])
