@@ -1,0 +1,223 @@
+!> The assembled tangent against central differences of the internal force.
+!!
+!! The tangent is a sum over patches. Torn apart, so that every patch has nodes of its own, the
+!! patches do not feel each other: one evaluation differentiates a column of all of them at once.
+module mpm_tangent_check
+  use mpm_assembly, only: assemble_tangent
+  use mpm_csc_matrix, only: add_block, csc_matrix_t, zero_values
+  use mpm_dof_map, only: add_solution
+  use mpm_kinds, only: dp
+  use mpm_material, only: law_von_mises
+  use mpm_system, only: body_t, evaluate, evaluation_ok, open_system, system_t
+  implicit none
+  private
+  public :: tangent_report_t, check_tangent
+
+  !> What the comparison found.
+  type :: tangent_report_t
+    logical  :: evaluated = .false.   !! .false.: the random state could not be evaluated
+    real(dp) :: amplitude = 0.0_dp    !! largest random displacement over element size [-]
+    real(dp) :: error = 0.0_dp        !! largest difference over the largest entry [-]
+    integer  :: row = 0, column = 0   !! equations of the largest difference
+    integer  :: n_columns = 0         !! columns compared
+    integer  :: n_skipped = 0         !! columns left out: a point crossed the yield surface
+    integer  :: n_plastic = 0         !! points that flow in the state
+  end type tangent_report_t
+
+  real(dp), parameter :: step_ratio = 1.0e-5_dp !! difference step over the largest random displacement
+
+contains
+
+  !> Compares at a random displacement of the unknowns that brings many points to yield.
+  !! Source: theory.md (13), (14).
+  subroutine check_tangent(report, system, body)
+    type(tangent_report_t), intent(out) :: report
+    type(system_t), intent(inout) :: system !! dofs and pattern are set; u is overwritten
+    type(body_t), intent(in)      :: body
+    type(csc_matrix_t) :: difference
+    logical, allocatable :: skipped(:)
+    real(dp) :: largest
+    integer :: outcome
+
+    report%amplitude = random_amplitude(body)
+    largest = report%amplitude*smallest_size(body, system%element)
+    system%u = 0.0_dp
+    call add_solution(system%dofs, largest*noise(system%dofs%n), system%u)
+    call evaluate(system, body, outcome)
+    report%evaluated = outcome == evaluation_ok
+    if (.not. report%evaluated) return
+    report%n_plastic = system%sums%n_plastic
+    call assemble_tangent(system%tangent, system%map, body%mesh, body%patches, system%kinematics, system%sums)
+    difference = system%tangent
+    call difference_tangent(difference, skipped, system, body, step_ratio*largest)
+    call compare(report, system%tangent, difference, skipped)
+  end subroutine check_tangent
+
+  !> Twice the smallest yield strain, or 1e-3 without plasticity.
+  pure function random_amplitude(body) result(amplitude)
+    type(body_t), intent(in) :: body
+    real(dp) :: amplitude !! [-]
+    integer :: m
+
+    amplitude = 1.0e-3_dp
+    do m = 1, size(body%material)
+      if (body%material(m)%law /= law_von_mises) cycle
+      amplitude = min(amplitude, 2.0_dp*body%material(m)%yield_stress(1)/body%material(m)%young)
+    end do
+    amplitude = max(amplitude, 1.0e-7_dp)
+  end function random_amplitude
+
+  !> Size of the smallest active element.
+  pure function smallest_size(body, element) result(h)
+    type(body_t), intent(in) :: body
+    integer, intent(in) :: element(:) !! active elements
+    real(dp) :: h                     !! [length]
+
+    h = minval(body%mesh%volume(element))**(1.0_dp/real(body%mesh%n_dim, dp))
+  end function smallest_size
+
+  !> Numbers in -1..1 that are the same in every run: Weyl's sequence of the golden ratio.
+  pure function noise(n) result(value)
+    integer, intent(in) :: n
+    real(dp) :: value(n)
+    real(dp), parameter :: golden = 0.6180339887498949_dp
+    integer :: i
+
+    do i = 1, n
+      value(i) = 2.0_dp*modulo(real(i, dp)*golden + real(i, dp)**2*0.7548776662466927_dp, 1.0_dp) - 1.0_dp
+    end do
+  end function noise
+
+  !> Central differences of all patches into a matrix, entry by entry through its own search.
+  subroutine difference_tangent(difference, skipped, system, body, delta)
+    type(csc_matrix_t), intent(inout) :: difference !! pattern of the tangent
+    logical, allocatable, intent(out) :: skipped(:) !! (n)  columns that cannot be compared
+    type(system_t), intent(in) :: system
+    type(body_t), intent(in)   :: body
+    real(dp), intent(in)       :: delta             !! [length]
+    type(body_t)   :: torn
+    type(system_t) :: torn_system
+    real(dp), allocatable :: block(:, :), column(:, :)
+    integer, allocatable :: equation(:)
+    logical, allocatable :: crossed(:, :)
+    integer :: patch, first, last, n_columns, k
+
+    call tear(torn, torn_system, system, body)
+    n_columns = body%mesh%n_dim*maxval(system%map%node_first(2:) - system%map%node_first(:system%map%n_patch))
+    allocate (column(size(torn_system%u), n_columns))
+    allocate (crossed(system%map%n_patch, n_columns))
+    do k = 1, n_columns
+      call difference_column(column(:, k), crossed(:, k), k, delta, torn, torn_system, system)
+    end do
+    call zero_values(difference)
+    allocate (skipped(difference%n), source=.false.)
+    do patch = 1, system%map%n_patch
+      first = system%map%node_first(patch)
+      last = system%map%node_first(patch + 1) - 1
+      if (last < first) cycle
+      equation = reshape(system%dofs%id(:, system%map%node(first:last)), [body%mesh%n_dim*(last - first + 1)])
+      block = column((first - 1)*body%mesh%n_dim + 1:last*body%mesh%n_dim, :size(equation))
+      call add_block(difference, equation, block)
+      do k = 1, size(equation)
+        if (crossed(patch, k) .and. equation(k) > 0) skipped(equation(k)) = .true.
+      end do
+    end do
+  end subroutine difference_tangent
+
+  !> A copy of the body in which every patch has its own nodes.
+  subroutine tear(torn, torn_system, system, body)
+    type(body_t), intent(out)   :: torn
+    type(system_t), intent(out) :: torn_system !! at the displacement of system
+    type(system_t), intent(in)  :: system
+    type(body_t), intent(in)    :: body
+    integer :: e
+
+    torn = body
+    torn%mesh%n_node = size(system%map%node)
+    torn%mesh%x = body%mesh%x(:, system%map%node)
+    do e = 1, body%mesh%n_el
+      torn%mesh%node(:, e) = max(1, system%map%node_first(body%patches%of_element(e)) - 1 &
+                                 + system%map%element_local(:, e))
+    end do
+    call open_system(torn_system, torn)
+    torn_system%active = system%active
+    torn_system%element = system%element
+    torn_system%u = system%u(:, system%map%node)
+  end subroutine tear
+
+  !> Derivative of the forces of every patch with respect to its local displacement k.
+  subroutine difference_column(column, crossed, k, delta, torn, torn_system, system)
+    real(dp), intent(out) :: column(:)  !! (n_dim times torn nodes)
+    logical, intent(out)  :: crossed(:) !! (n_patch)  a point began or ceased to flow
+    integer, intent(in)   :: k          !! local displacement of all patches
+    real(dp), intent(in)  :: delta      !! [length]
+    type(body_t), intent(in)      :: torn
+    type(system_t), intent(inout) :: torn_system
+    type(system_t), intent(in)    :: system
+    real(dp), allocatable :: u(:, :), f_plus(:, :)
+    integer, allocatable :: plastic(:), e_patch(:)
+    integer :: i, outcome
+
+    u = torn_system%u
+    e_patch = torn%patches%of_element(system%element)
+    call shift(torn_system%u, system%map%node_first, k, delta)
+    call evaluate(torn_system, torn, outcome)
+    f_plus = torn_system%f_int
+    plastic = torn_system%sums%plastic_in
+    torn_system%u = u
+    call shift(torn_system%u, system%map%node_first, k, -delta)
+    call evaluate(torn_system, torn, outcome)
+    column = reshape((f_plus - torn_system%f_int)/(2.0_dp*delta), [size(column)])
+    crossed = .false.
+    do i = 1, size(e_patch)
+      associate (e => system%element(i))
+        if (plastic(e) /= system%sums%plastic_in(e) .or. torn_system%sums%plastic_in(e) &
+            /= system%sums%plastic_in(e)) crossed(e_patch(i)) = .true.
+      end associate
+    end do
+    torn_system%u = u
+  end subroutine difference_column
+
+  !> Moves local displacement k of every patch that has one.
+  pure subroutine shift(u, node_first, k, delta)
+    real(dp), intent(inout) :: u(:, :)       !! (n_dim, torn nodes)
+    integer, intent(in)     :: node_first(:) !! (n_patch+1)
+    integer, intent(in)     :: k             !! local displacement
+    real(dp), intent(in)    :: delta         !! [length]
+    integer :: patch, a, i
+
+    a = (k - 1)/size(u, 1)
+    i = k - a*size(u, 1)
+    do patch = 1, size(node_first) - 1
+      if (node_first(patch) + a < node_first(patch + 1)) then
+        u(i, node_first(patch) + a) = u(i, node_first(patch) + a) + delta
+      end if
+    end do
+  end subroutine shift
+
+  !> Largest difference over the largest entry of the tangent, in the columns that count.
+  pure subroutine compare(report, tangent, difference, skipped)
+    type(tangent_report_t), intent(inout) :: report
+    type(csc_matrix_t), intent(in) :: tangent, difference
+    logical, intent(in) :: skipped(:) !! (n)
+    real(dp) :: largest, here
+    integer :: j, k
+
+    report%n_skipped = count(skipped)
+    report%n_columns = tangent%n - report%n_skipped
+    if (tangent%n == 0) return
+    largest = maxval(abs(tangent%val))
+    report%error = -1.0_dp
+    do j = 1, int(tangent%n)
+      if (skipped(j)) cycle
+      do k = int(tangent%col_ptr(j - 1)), int(tangent%col_ptr(j)) - 1
+        here = abs(tangent%val(k) - difference%val(k))/largest
+        if (here <= report%error) cycle
+        report%error = here
+        report%row = int(tangent%row(k)) + 1
+        report%column = j
+      end do
+    end do
+  end subroutine compare
+
+end module mpm_tangent_check
