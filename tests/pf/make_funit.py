@@ -29,7 +29,7 @@ CHARACTER = {"character": ("character(*)", "character(*)", "[{}]")}
 
 RANKS = [(0, 0), (0, 1), (1, 1), (0, 2), (2, 2), (0, 3), (3, 3)]
 
-HEADER = '''\
+HEADER = """\
 !> The assertions. Written by make_funit.py.
 module funit
   use, intrinsic :: iso_fortran_env, only: int64, real64
@@ -38,9 +38,9 @@ module funit
   implicit none
   private
   public :: anyExceptions, SourceLocation
-'''
+"""
 
-CONDITIONS = '''
+CONDITIONS = """
   subroutine true_0(condition, message, location)
     logical, intent(in) :: condition
     character(*), intent(in), optional :: message
@@ -74,10 +74,10 @@ CONDITIONS = '''
     type(SourceLocation), intent(in) :: location
     call require(.false., "AssertFail", location, message)
   end subroutine assertFail
-'''
+"""
 
 # The tolerance is an argument of its own, as in pFUnit, where the third position is the tolerance.
-SPECIFIC = '''
+SPECIFIC = """
   subroutine {name}(expected, actual, {extra}message, location)
     {expected}, intent(in) :: expected{dims_expected}
     {actual}, intent(in) :: actual{dims_actual}
@@ -87,7 +87,7 @@ SPECIFIC = '''
     call compare({flat_expected}, {flat_actual}, &
       assertion({op}, shape(expected), shape(actual), location, message{pass_extra}))
   end subroutine {name}
-'''
+"""
 
 TOLERANCE = "    real(real64), intent(in), optional :: tolerance\n"
 
@@ -149,9 +149,8 @@ def module():
         ]
         interfaces.append(interface(relation, [name for name, _ in pairs]))
         bodies.extend(text for _, text in pairs)
-    return HEADER + "\n" + "\n".join(interfaces) + "\ncontains\n" + "".join(bodies) + (
-        "\nend module funit\n"
-    )
+    parts = [HEADER, *interfaces, "contains", *bodies, "end module funit\n"]
+    return "\n".join(parts)
 
 
 def main():

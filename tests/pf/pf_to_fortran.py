@@ -116,9 +116,8 @@ def register(suite, role, name):
 def suite_source(suite):
     """The translated file and, behind it, a subroutine that runs its tests."""
     names = suite.tests + [name for name in (suite.before, suite.after) if name]
-    fixtures = "".join(
-        f", {role}={name}" for role, name in (("before", suite.before), ("after", suite.after)) if name
-    )
+    fixtures = f", before={suite.before}" if suite.before else ""
+    fixtures += f", after={suite.after}" if suite.after else ""
     rows = [f'# 1 "{suite.path}"', *suite.lines, "", f"subroutine {suite.module}_suite()"]
     rows += ["  use pf_run, only: run_test"]
     rows += [f"  use {suite.module}, only: {name}" for name in names]
@@ -136,7 +135,7 @@ def driver_source(suites):
     rows = ["program run_suites", "  use pf_run, only: finish, start", "  implicit none"]
     rows += ["  interface"]
     for suite in suites:
-        rows += [f"    subroutine {suite.module}_suite()", f"    end subroutine {suite.module}_suite"]
+        rows += [f"    {word}subroutine {suite.module}_suite" for word in ("", "end ")]
     rows += ["  end interface", "  call start()"]
     rows += [f"  call {suite.module}_suite()" for suite in suites]
     rows += ["  call finish()", "end program run_suites", ""]

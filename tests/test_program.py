@@ -1,0 +1,42 @@
+"""The command line of the program: what needs no deck."""
+
+import re
+import subprocess
+
+import pytest
+from conftest import ROOT
+
+
+def git(*arguments):
+    command = ["git", "-c", f"safe.directory={ROOT}", "-C", ROOT, *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("option", ["--help", "-h"])
+def test_help_goes_to_stdout(tessera, run_program, option):
+    run = run_program(tessera, option)
+    assert (run.code, run.stderr) == (0, "")
+    assert "tessera JOB.inp" in run.stdout
+
+
+def test_version_names_program_and_revision(tessera, run_program):
+    run = run_program(tessera, "--version")
+    assert (run.code, run.stderr) == (0, "")
+    version = re.search(
+        r"project\(tessera\s+VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text()
+    )
+    assert version.group(1) in run.stdout
+    head = git("rev-parse", "--short=12", "HEAD")
+    if head.returncode == 0:
+        assert head.stdout.strip() in run.stdout
+
+
+@pytest.mark.parametrize(
+    "arguments", [(), ("--no-such-option",), ("a.inp", "b.inp"), ("a.inp", "-t", "none")]
+)
+def test_wrong_command_line_exits_1(tessera, run_program, arguments):
+    run = run_program(tessera, *arguments)
+    assert run.code == 1
+    assert run.stdout == ""
+    assert run.stderr != ""
+    assert "Backtrace" not in run.stderr
