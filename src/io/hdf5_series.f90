@@ -1,0 +1,219 @@
+!> HDF5 datasets that grow by rows.
+!!
+!! Rows of a chunk that is written once are never touched again, and chunks without compression
+!! keep their place: a reader finds all rows of the last flush also after a kill of the program.
+!! Every procedure returns at once when `error` is set already.
+module mpm_hdf5_series
+  use, intrinsic :: iso_c_binding, only: c_loc
+  use hdf5, only: h5dclose_f, h5dcreate_f, h5dget_space_f, h5dset_extent_f, h5dwrite_f, &
+                  h5kind_to_type, h5p_dataset_create_f, h5pclose_f, h5pcreate_f, h5pset_chunk_f, &
+                  h5pset_deflate_f, h5pset_shuffle_f, h5s_select_set_f, h5s_unlimited_f, &
+                  h5sclose_f, h5screate_simple_f, h5sselect_hyperslab_f, h5t_ieee_f64le, &
+                  h5t_std_i32le, h5t_std_i64le, h5t_std_u8le, h5_integer_kind, h5_real_kind, &
+                  hid_t, hsize_t
+  use mpm_error, only: error_t
+  use mpm_hdf5_failure, only: hdf5_failure
+  use mpm_hdf5_file, only: hdf5_file_t
+  use mpm_kinds, only: dp, ip
+  implicit none
+  private
+  public :: series_layout_t, series_t, append_rows, close_series, create_series
+  public :: kind_float64, kind_int32, kind_int64, kind_uint8
+
+  integer, parameter :: kind_float64 = 1
+  integer, parameter :: kind_int32 = 2
+  integer, parameter :: kind_int64 = 3
+  integer, parameter :: kind_uint8 = 4
+  integer, parameter :: deflate_level = 4
+
+  !> How the rows of a dataset are stored.
+  type :: series_layout_t
+    integer :: kind = kind_float64     !! kind_*
+    integer :: n_columns = 0           !! 0: a row is a scalar, the dataset has one dimension
+    integer :: chunk_rows = 1024       !! rows stored together
+    logical :: compressed = .false.    !! shuffle and deflate
+  end type series_layout_t
+
+  !> An open dataset.
+  type :: series_t
+    type(series_layout_t) :: layout
+    integer(hid_t) :: id = -1_hid_t
+    integer(ip)    :: n_rows = 0_ip !! written so far
+    logical        :: is_open = .false.
+  end type series_t
+
+  !> Appends rows of reals or of integers.
+  interface append_rows
+    module procedure append_reals, append_real_rows, append_integers
+  end interface append_rows
+
+contains
+
+  !> Creates a dataset without rows.
+  subroutine create_series(series, file, name, layout, error)
+    type(series_t), intent(out) :: series              !! open
+    type(hdf5_file_t), intent(in) :: file              !! open
+    character(*), intent(in) :: name                   !! absolute path of the dataset
+    type(series_layout_t), intent(in) :: layout        !! of its rows
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+    integer(hid_t)   :: properties, space
+    integer(hsize_t) :: first(2), largest(2), chunk(2)
+    integer :: rank, status
+
+    if (allocated(error)) return
+    series%layout = layout
+    rank = merge(1, 2, layout%n_columns == 0)
+    first = row_shape(layout, 0_hsize_t)
+    largest = row_shape(layout, h5s_unlimited_f)
+    chunk = row_shape(layout, int(max(1, layout%chunk_rows), hsize_t))
+    call h5screate_simple_f(rank, first(:rank), space, status, largest(:rank))
+    if (status >= 0) call h5pcreate_f(h5p_dataset_create_f, properties, status)
+    if (status >= 0) call h5pset_chunk_f(properties, rank, chunk(:rank), status)
+    if (layout%compressed) then
+      if (status >= 0) call h5pset_shuffle_f(properties, status)
+      if (status >= 0) call h5pset_deflate_f(properties, deflate_level, status)
+    end if
+    if (status >= 0) then
+      call h5dcreate_f(file%id, name, stored_type(layout%kind), space, series%id, status, properties)
+    end if
+    series%is_open = status >= 0
+    if (status < 0) then
+      call hdf5_failure(error, file%path, "write")
+      return
+    end if
+    call h5pclose_f(properties, status)
+    call h5sclose_f(space, status)
+  end subroutine create_series
+
+  !> Closes a dataset; no effect on a closed one.
+  subroutine close_series(series)
+    type(series_t), intent(inout) :: series !! closed
+    integer :: status
+
+    if (series%is_open) call h5dclose_f(series%id, status)
+    series%is_open = .false.
+  end subroutine close_series
+
+  !> Appends scalar rows of reals.
+  subroutine append_reals(series, file, values, error)
+    type(series_t), intent(inout) :: series            !! grows
+    type(hdf5_file_t), intent(in) :: file              !! that holds it
+    real(dp), intent(in) :: values(:)                  !! (n_rows)
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+
+    if (allocated(error)) return
+    call write_reals(series, file, size(values), values, error)
+  end subroutine append_reals
+
+  !> Appends rows of several reals.
+  subroutine append_real_rows(series, file, values, error)
+    type(series_t), intent(inout) :: series            !! grows
+    type(hdf5_file_t), intent(in) :: file              !! that holds it
+    real(dp), intent(in) :: values(:, :)               !! (n_columns, n_rows)
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+
+    if (allocated(error)) return
+    call write_reals(series, file, size(values, 2), values, error)
+  end subroutine append_real_rows
+
+  !> Appends scalar rows of integers.
+  subroutine append_integers(series, file, values, error)
+    type(series_t), intent(inout) :: series            !! grows
+    type(hdf5_file_t), intent(in) :: file              !! that holds it
+    integer(ip), intent(in) :: values(:)               !! (n_rows)
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+    integer(ip), allocatable, target :: buffer(:)
+    integer(hid_t) :: memory, space
+    integer :: status
+
+    if (allocated(error)) return
+    allocate (buffer(size(values)))
+    buffer(:) = values
+    call grow(series, size(values), memory, space, status)
+    if (status >= 0) then
+      call h5dwrite_f(series%id, h5kind_to_type(ip, h5_integer_kind), c_loc(buffer), status, &
+                      memory, space)
+    end if
+    if (status < 0) then
+      call hdf5_failure(error, file%path, "write")
+      return
+    end if
+    call h5sclose_f(memory, status)
+    call h5sclose_f(space, status)
+  end subroutine append_integers
+
+  !> Writes reals behind the last row.
+  subroutine write_reals(series, file, n_rows, values, error)
+    type(series_t), intent(inout) :: series          !! grows
+    type(hdf5_file_t), intent(in) :: file            !! that holds it
+    integer, intent(in) :: n_rows                    !! rows in values
+    real(dp), intent(in), target :: values(*)        !! row by row
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+    integer(hid_t) :: memory, space
+    integer :: status
+
+    call grow(series, n_rows, memory, space, status)
+    if (status >= 0) then
+      call h5dwrite_f(series%id, h5kind_to_type(dp, h5_real_kind), c_loc(values), status, &
+                      memory, space)
+    end if
+    if (status < 0) then
+      call hdf5_failure(error, file%path, "write")
+      return
+    end if
+    call h5sclose_f(memory, status)
+    call h5sclose_f(space, status)
+  end subroutine write_reals
+
+  !> Makes room for rows and selects them.
+  subroutine grow(series, n_rows, memory, space, status)
+    type(series_t), intent(inout) :: series !! has n_rows rows more
+    integer, intent(in) :: n_rows           !! new rows
+    integer(hid_t), intent(out) :: memory   !! dataspace of the new rows
+    integer(hid_t), intent(out) :: space    !! dataspace of the file, the new rows selected
+    integer, intent(out) :: status          !! < 0: failed
+    integer(hsize_t) :: first(2), new(2), total(2)
+    integer :: rank
+
+    rank = merge(1, 2, series%layout%n_columns == 0)
+    first = 0_hsize_t
+    first(rank) = series%n_rows
+    new = row_shape(series%layout, int(n_rows, hsize_t))
+    total = row_shape(series%layout, int(series%n_rows + n_rows, hsize_t))
+    call h5dset_extent_f(series%id, total(:rank), status)
+    if (status >= 0) call h5screate_simple_f(rank, new(:rank), memory, status)
+    if (status >= 0) call h5dget_space_f(series%id, space, status)
+    if (status >= 0) then
+      call h5sselect_hyperslab_f(space, h5s_select_set_f, first(:rank), new(:rank), status)
+    end if
+    if (status >= 0) series%n_rows = series%n_rows + n_rows
+  end subroutine grow
+
+  !> Extents of a number of rows, in the order of Fortran.
+  pure function row_shape(layout, n_rows) result(extents)
+    type(series_layout_t), intent(in) :: layout !! of the rows
+    integer(hsize_t), intent(in) :: n_rows      !! rows
+    integer(hsize_t) :: extents(2)              !! the first one counts if a row is a scalar
+
+    extents = [n_rows, 1_hsize_t]
+    if (layout%n_columns > 0) extents = [int(layout%n_columns, hsize_t), n_rows]
+  end function row_shape
+
+  !> Type of the numbers in the file.
+  function stored_type(kind) result(type_id)
+    integer, intent(in) :: kind !! kind_*
+    integer(hid_t) :: type_id
+
+    select case (kind)
+    case (kind_int32)
+      type_id = h5t_std_i32le
+    case (kind_int64)
+      type_id = h5t_std_i64le
+    case (kind_uint8)
+      type_id = h5t_std_u8le
+    case default
+      type_id = h5t_ieee_f64le
+    end select
+  end function stored_type
+
+end module mpm_hdf5_series
