@@ -1,0 +1,62 @@
+!> Where the results of a job go.
+module mpm_result_paths
+  use mpm_error, only: error_t, exit_file, make_error
+  implicit none
+  private
+  public :: result_paths_t, existing_results, result_paths
+
+  !> The files of a job.
+  type :: result_paths_t
+    character(:), allocatable :: log     !! JOB.log
+    character(:), allocatable :: status  !! JOB.sta
+    character(:), allocatable :: history !! JOB_history.csv
+    character(:), allocatable :: points  !! JOB.vtkhdf
+    character(:), allocatable :: mesh    !! JOB_mesh.vtkhdf
+  end type result_paths_t
+
+contains
+
+  !> Paths of the files of a job.
+  pure function result_paths(folder, job) result(paths)
+    character(*), intent(in) :: folder !! where they go, empty = current folder
+    character(*), intent(in) :: job    !! name of the job
+    type(result_paths_t) :: paths
+    character(:), allocatable :: stem
+
+    stem = job
+    if (len_trim(folder) > 0) then
+      stem = trim(folder)//"/"//job
+      if (folder(len_trim(folder):len_trim(folder)) == "/") stem = trim(folder)//job
+    end if
+    paths%log = stem//".log"
+    paths%status = stem//".sta"
+    paths%history = stem//"_history.csv"
+    paths%points = stem//".vtkhdf"
+    paths%mesh = stem//"_mesh.vtkhdf"
+  end function result_paths
+
+  !> Refuses to go on when a file of an earlier run is there.
+  subroutine existing_results(paths, error)
+    type(result_paths_t), intent(in) :: paths          !! files that a run would write
+    type(error_t), allocatable, intent(out) :: error   !! exit_file with the first file found
+
+    call refuse_existing(paths%log, error)
+    if (.not. allocated(error)) call refuse_existing(paths%status, error)
+    if (.not. allocated(error)) call refuse_existing(paths%history, error)
+    if (.not. allocated(error)) call refuse_existing(paths%points, error)
+    if (.not. allocated(error)) call refuse_existing(paths%mesh, error)
+  end subroutine existing_results
+
+  !> Reports a file that exists.
+  subroutine refuse_existing(path, error)
+    character(*), intent(in) :: path                 !! file
+    type(error_t), allocatable, intent(out) :: error !! exit_file if the file is there
+    logical :: exists
+
+    inquire (file=path, exist=exists)
+    if (.not. exists) return
+    call make_error(error, exit_file, "error: '"//path//"' exists already: earlier results are " &
+                    //"only overwritten with --force")
+  end subroutine refuse_existing
+
+end module mpm_result_paths

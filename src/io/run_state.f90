@@ -1,0 +1,116 @@
+!> What every writer is told: about the run as a whole, and after each increment.
+module mpm_run_state
+  use mpm_build_info, only: compiler, compiler_flags, git_revision, hdf5_version, metis_version, &
+                            umfpack_version, version
+  use mpm_kinds, only: dp
+  use mpm_model, only: model_t
+  implicit none
+  private
+  public :: run_info_t, run_state_t
+  public :: end_of_run, estimated_time_left, make_run_info, make_run_state
+
+  !> What stays the same during a run and is not part of the model.
+  type :: run_info_t
+    character(:), allocatable :: deck_name !! file name of the deck
+    character(:), allocatable :: deck_text !! full text of the deck with its includes
+    character(:), allocatable :: version   !! of the program
+    character(:), allocatable :: git       !! revision of the source
+    character(:), allocatable :: compiler  !! name and version of the compiler
+    character(:), allocatable :: libraries !! names and versions of the libraries
+    character(:), allocatable :: started   !! date and time of the start, ISO 8601
+    integer :: n_threads = 1               !! OpenMP threads
+    logical :: quiet = .false.             !! .true.: no progress on the terminal
+  end type run_info_t
+
+  !> Where a run stands after an attempt at an increment. The fields of an attempt that failed
+  !! are those of the last accepted increment.
+  type :: run_state_t
+    integer  :: step = 0                !! number of the step, 0 before the first
+    integer  :: increment = 0           !! number of the increment in the step
+    integer  :: increment_total = 0     !! accepted increments in the run
+    integer  :: attempt = 0             !! attempt at this increment, from 1
+    real(dp) :: time = 0.0_dp           !! total time at the end of the increment
+    real(dp) :: step_time = 0.0_dp      !! step time at the end of the increment
+    real(dp) :: size = 0.0_dp           !! size of the increment in time
+    integer  :: n_iterations = 0        !! corrections of Newton's method
+    real(dp) :: residual = 0.0_dp       !! last relative residual [-]
+    real(dp) :: wall_seconds = 0.0_dp   !! since the start of the run [s]
+    integer  :: n_active_elements = 0   !! elements that host a point
+    integer  :: n_lost = 0              !! points lost so far
+    integer  :: n_extrapolated = 0      !! points just outside the mesh
+    real(dp), allocatable :: reaction(:, :)   !! (n_dim, n_node)  internal minus applied force where
+                                              !!                  prescribed, 0 elsewhere [force]
+    real(dp), allocatable :: applied(:, :)    !! (n_dim, n_node)  external nodal forces [force]
+    real(dp), allocatable :: delta_u(:, :)    !! (n_dim, n_node)  displacement of the increment [length]
+    real(dp), allocatable :: node_u(:, :)     !! (n_dim, n_node)  sum of the increments [length]
+    real(dp), allocatable :: delta_j(:)       !! (n_el)           det Delta F of the increment [-]
+    real(dp), allocatable :: delta_j_patch(:) !! (n_patch)        patch mean of delta_j [-]
+  end type run_state_t
+
+contains
+
+  !> State at time zero: no force, no displacement, no change of volume.
+  pure subroutine make_run_state(state, n_dim, n_node, n_el, n_patch)
+    type(run_state_t), intent(out) :: state !! at time zero
+    integer, intent(in) :: n_dim            !! 2 or 3
+    integer, intent(in) :: n_node           !! nodes of the mesh
+    integer, intent(in) :: n_el             !! elements of the mesh
+    integer, intent(in) :: n_patch          !! patches
+
+    allocate (state%reaction(n_dim, n_node), source=0.0_dp)
+    allocate (state%applied(n_dim, n_node), source=0.0_dp)
+    allocate (state%delta_u(n_dim, n_node), source=0.0_dp)
+    allocate (state%node_u(n_dim, n_node), source=0.0_dp)
+    allocate (state%delta_j(n_el), source=1.0_dp)
+    allocate (state%delta_j_patch(n_patch), source=1.0_dp)
+  end subroutine make_run_state
+
+  !> Total time at the end of the last step.
+  pure function end_of_run(model) result(time)
+    type(model_t), intent(in) :: model !! with its steps
+    real(dp) :: time                   !! sum of the periods
+    integer :: i
+
+    time = 0.0_dp
+    do i = 1, size(model%step)
+      time = time + model%step(i)%schedule%period
+    end do
+  end function end_of_run
+
+  !> Wall time that the rest of the run takes at the mean pace so far.
+  pure function estimated_time_left(state, end_time) result(seconds)
+    type(run_state_t), intent(in) :: state !! time and wall time now
+    real(dp), intent(in) :: end_time       !! total time at the end of the run
+    real(dp) :: seconds                    !! [s], 0 while nothing is known
+
+    seconds = 0.0_dp
+    if (state%time > 0.0_dp) then
+      seconds = state%wall_seconds*max(end_time - state%time, 0.0_dp)/state%time
+    end if
+  end function estimated_time_left
+
+  !> What a run tells about itself: the deck, this program and the clock of the machine.
+  subroutine make_run_info(info, deck_name, deck_text, n_threads, quiet)
+    type(run_info_t), intent(out) :: info   !! complete
+    character(*), intent(in) :: deck_name   !! file name of the deck
+    character(*), intent(in) :: deck_text   !! full text of the deck with its includes
+    integer, intent(in) :: n_threads        !! OpenMP threads
+    logical, intent(in) :: quiet            !! no progress on the terminal
+    character(8)  :: date
+    character(10) :: time
+    character(5)  :: zone
+
+    info%deck_name = deck_name
+    info%deck_text = deck_text
+    info%n_threads = n_threads
+    info%quiet = quiet
+    info%version = version
+    info%git = git_revision
+    info%compiler = compiler//" "//compiler_flags
+    info%libraries = "HDF5 "//hdf5_version//", UMFPACK "//umfpack_version//", METIS "//metis_version
+    call date_and_time(date, time, zone)
+    info%started = date(1:4)//"-"//date(5:6)//"-"//date(7:8)//"T"//time(1:2)//":"//time(3:4) &
+                   //":"//time(5:6)//zone(1:3)//":"//zone(4:5)
+  end subroutine make_run_info
+
+end module mpm_run_state
