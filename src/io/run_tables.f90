@@ -1,0 +1,210 @@
+!> The group /tessera of JOB.vtkhdf: the deck, the program, and tables over the run.
+module mpm_run_tables
+  use mpm_equilibrium, only: newton_report_t
+  use mpm_error, only: error_t
+  use mpm_hdf5_file, only: hdf5_file_t, make_group, write_integers_attribute, write_text, &
+                           write_text_attribute
+  use mpm_hdf5_series, only: append_rows, close_series, create_series, kind_float64, kind_int32, &
+                             kind_int64, series_layout_t, series_t
+  use mpm_history_columns, only: history_column_t
+  use mpm_kinds, only: dp, ip
+  use mpm_ledger, only: ledger_t
+  use mpm_run_state, only: run_info_t, run_state_t
+  implicit none
+  private
+  public :: run_tables_t, close_tables, open_tables
+  public :: append_history, append_iterations, append_ledger
+
+  character(13), parameter :: iteration_columns(10) = [character(13) :: "step", "increment", &
+    "attempt", "iteration", "residual", "kinematics", "stress", "assembly", "factorisation", "solve"]
+  integer, parameter :: n_iteration_integers = 4 !! leading columns of integers
+  character(13), parameter :: ledger_columns(9) = [character(13) :: "step", "increment", "time", &
+    "count", "mass", "volume", "lost", "extrapolated", "centre"]
+  integer, parameter :: column_of_centre = 9
+
+  !> The open tables; each column is a dataset.
+  type :: run_tables_t
+    type(series_t), allocatable :: history(:)    !! step, increment, time, then the *HISTORY ones
+    type(series_t), allocatable :: iterations(:) !! (10)
+    type(series_t), allocatable :: ledger(:)     !! (9)
+  end type run_tables_t
+
+contains
+
+  !> Creates the group with the deck and the attributes, and the tables without rows.
+  subroutine open_tables(tables, file, columns, info, units, error)
+    type(run_tables_t), intent(out) :: tables          !! open
+    type(hdf5_file_t), intent(in) :: file              !! JOB.vtkhdf
+    type(history_column_t), intent(in) :: columns(:)   !! of *HISTORY
+    type(run_info_t), intent(in) :: info               !! deck and program
+    character(*), intent(in) :: units                  !! labels of *UNITS
+    type(error_t), allocatable, intent(out) :: error   !! exit_file
+
+    call make_group(file, "/tessera", error)
+    call write_text(file, "/tessera/deck", info%deck_text, error)
+    call write_text(file, "/tessera/deck_name", info%deck_name, error)
+    call write_text_attribute(file, "/tessera", "version", info%version, error)
+    call write_text_attribute(file, "/tessera", "git", info%git, error)
+    call write_text_attribute(file, "/tessera", "compiler", info%compiler, error)
+    call write_text_attribute(file, "/tessera", "libraries", info%libraries, error)
+    call write_text_attribute(file, "/tessera", "units", units, error)
+    call write_text_attribute(file, "/tessera", "started", info%started, error)
+    call write_integers_attribute(file, "/tessera", "threads", [int(info%n_threads, ip)], error)
+    call create_history(tables%history, file, columns, error)
+    call create_iterations(tables%iterations, file, error)
+    call create_ledger(tables%ledger, file, error)
+  end subroutine open_tables
+
+  !> Creates the columns of the history.
+  subroutine create_history(series, file, columns, error)
+    type(series_t), allocatable, intent(out) :: series(:) !! open
+    type(hdf5_file_t), intent(in) :: file                 !! JOB.vtkhdf
+    type(history_column_t), intent(in) :: columns(:)      !! of *HISTORY
+    type(error_t), allocatable, intent(inout) :: error    !! exit_file
+    integer :: i
+
+    allocate (series(size(columns) + 3))
+    call make_group(file, "/tessera/history", error)
+    call create_series(series(1), file, "/tessera/history/step", series_layout_t(kind_int32), error)
+    call create_series(series(2), file, "/tessera/history/increment", &
+                       series_layout_t(kind_int32), error)
+    call create_series(series(3), file, "/tessera/history/time", series_layout_t(), error)
+    do i = 1, size(columns)
+      call create_series(series(i + 3), file, "/tessera/history/"//link_name(columns(i)%name), &
+                         series_layout_t(), error)
+    end do
+  end subroutine create_history
+
+  !> Creates the columns of the iterations.
+  subroutine create_iterations(series, file, error)
+    type(series_t), allocatable, intent(out) :: series(:) !! open
+    type(hdf5_file_t), intent(in) :: file                 !! JOB.vtkhdf
+    type(error_t), allocatable, intent(inout) :: error    !! exit_file
+    integer :: i
+
+    allocate (series(size(iteration_columns)))
+    call make_group(file, "/tessera/iterations", error)
+    do i = 1, size(series)
+      call create_series(series(i), file, "/tessera/iterations/"//trim(iteration_columns(i)), &
+                         series_layout_t(merge(kind_int32, kind_float64, &
+                                               i <= n_iteration_integers)), error)
+    end do
+  end subroutine create_iterations
+
+  !> Creates the columns of the ledger.
+  subroutine create_ledger(series, file, error)
+    type(series_t), allocatable, intent(out) :: series(:) !! open
+    type(hdf5_file_t), intent(in) :: file                 !! JOB.vtkhdf
+    type(error_t), allocatable, intent(inout) :: error    !! exit_file
+    type(series_layout_t) :: layout
+    integer :: i
+
+    allocate (series(size(ledger_columns)))
+    call make_group(file, "/tessera/ledger", error)
+    do i = 1, size(series)
+      layout = series_layout_t()
+      select case (ledger_columns(i))
+      case ("step", "increment", "count", "lost", "extrapolated")
+        layout%kind = kind_int64
+      case ("centre")
+        layout%n_columns = 3
+      end select
+      call create_series(series(i), file, "/tessera/ledger/"//trim(ledger_columns(i)), layout, error)
+    end do
+  end subroutine create_ledger
+
+  !> Appends the values of *HISTORY.
+  subroutine append_history(tables, file, state, values, error)
+    type(run_tables_t), intent(inout) :: tables      !! longer
+    type(hdf5_file_t), intent(in) :: file            !! JOB.vtkhdf
+    type(run_state_t), intent(in) :: state           !! step, increment, time
+    real(dp), intent(in) :: values(:)                !! of the columns
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+    integer :: i
+
+    call append_rows(tables%history(1), file, [int(state%step, ip)], error)
+    call append_rows(tables%history(2), file, [int(state%increment, ip)], error)
+    call append_rows(tables%history(3), file, [state%time], error)
+    do i = 1, size(values)
+      call append_rows(tables%history(i + 3), file, values(i:i), error)
+    end do
+  end subroutine append_history
+
+  !> Appends the iterations of an attempt, from the residual before the first correction on.
+  subroutine append_iterations(tables, file, state, report, error)
+    type(run_tables_t), intent(inout) :: tables      !! longer
+    type(hdf5_file_t), intent(in) :: file            !! JOB.vtkhdf
+    type(run_state_t), intent(in) :: state           !! step, increment, attempt
+    type(newton_report_t), intent(in) :: report      !! of the attempt
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+    real(dp) :: seconds(5)
+    integer :: i, j
+
+    if (.not. allocated(report%residual)) return
+    do i = 0, ubound(report%residual, 1)
+      seconds = 0.0_dp
+      if (i > 0 .and. allocated(report%seconds)) then
+        if (i <= size(report%seconds, 2)) seconds = report%seconds(:, i)
+      end if
+      call append_rows(tables%iterations(1), file, [int(state%step, ip)], error)
+      call append_rows(tables%iterations(2), file, [int(state%increment, ip)], error)
+      call append_rows(tables%iterations(3), file, [int(state%attempt, ip)], error)
+      call append_rows(tables%iterations(4), file, [int(i, ip)], error)
+      call append_rows(tables%iterations(5), file, report%residual(i:i), error)
+      do j = 1, size(seconds)
+        call append_rows(tables%iterations(j + 5), file, seconds(j:j), error)
+      end do
+    end do
+  end subroutine append_iterations
+
+  !> Appends the ledger of an increment.
+  subroutine append_ledger(tables, file, state, ledger, error)
+    type(run_tables_t), intent(inout) :: tables      !! longer
+    type(hdf5_file_t), intent(in) :: file            !! JOB.vtkhdf
+    type(run_state_t), intent(in) :: state           !! step, increment, time
+    type(ledger_t), intent(in) :: ledger             !! after the increment
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+
+    call append_rows(tables%ledger(1), file, [int(state%step, ip)], error)
+    call append_rows(tables%ledger(2), file, [int(state%increment, ip)], error)
+    call append_rows(tables%ledger(3), file, [state%time], error)
+    call append_rows(tables%ledger(4), file, [int(ledger%n_points, ip)], error)
+    call append_rows(tables%ledger(5), file, [ledger%mass], error)
+    call append_rows(tables%ledger(6), file, [ledger%volume], error)
+    call append_rows(tables%ledger(7), file, [int(ledger%n_lost, ip)], error)
+    call append_rows(tables%ledger(8), file, [int(ledger%n_extrapolated, ip)], error)
+    call append_rows(tables%ledger(column_of_centre), file, reshape(ledger%centre, [3, 1]), error)
+  end subroutine append_ledger
+
+  !> Closes all tables.
+  subroutine close_tables(tables)
+    type(run_tables_t), intent(inout) :: tables !! closed
+
+    call close_all(tables%history)
+    call close_all(tables%iterations)
+    call close_all(tables%ledger)
+  end subroutine close_tables
+
+  !> Closes columns.
+  subroutine close_all(series)
+    type(series_t), allocatable, intent(inout) :: series(:) !! closed
+    integer :: i
+
+    if (.not. allocated(series)) return
+    do i = 1, size(series)
+      call close_series(series(i))
+    end do
+  end subroutine close_all
+
+  !> A name without the separator of HDF5 paths.
+  pure function link_name(name) result(link)
+    character(*), intent(in) :: name
+    character(len(name)) :: link
+    integer :: i
+
+    do i = 1, len(name)
+      link(i:i) = merge("_", name(i:i), name(i:i) == "/")
+    end do
+  end function link_name
+
+end module mpm_run_tables
