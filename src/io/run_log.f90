@@ -1,0 +1,195 @@
+!> JOB.log: everything about a run that a reader may ask for later.
+module mpm_run_log
+  use mpm_equilibrium, only: newton_report_t, outcome_converged
+  use mpm_error, only: error_t
+  use mpm_expectations, only: n_failed_expectations, verdict_line, verdict_t
+  use mpm_kinds, only: dp
+  use mpm_log_model, only: freedom_ratio_text, model_text, set_text
+  use mpm_model, only: model_t
+  use mpm_run_state, only: run_info_t, run_state_t
+  use mpm_text, only: integer_text, real_text
+  use mpm_text_file, only: close_text_file, open_text_file, text_file_t, write_line
+  implicit none
+  private
+  public :: run_log_t, close_log, log_attempt, log_message, log_summary, open_log, outcome_text
+
+  character(*), parameter :: line_end = new_line("a")
+
+  !> The open log and what it adds up.
+  type :: run_log_t
+    type(text_file_t) :: file
+    real(dp) :: seconds(5) = 0.0_dp !! CPU: kinematics, stress, assembly, factorisation, solve [s]
+    integer  :: n_attempts = 0      !! increments tried
+    integer  :: n_iterations = 0    !! corrections of Newton's method
+  end type run_log_t
+
+contains
+
+  !> Opens the log and writes the program, the deck and the model.
+  subroutine open_log(log, path, model, info, error)
+    type(run_log_t), intent(out) :: log              !! open
+    character(*), intent(in) :: path                 !! file
+    type(model_t), intent(in) :: model               !! at time zero
+    type(run_info_t), intent(in) :: info             !! deck and program
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+
+    call open_text_file(log%file, path, error)
+    if (allocated(error)) return
+    call write_line(log%file, "Tessera "//info%version//", revision "//info%git//line_end &
+                    //"compiler: "//info%compiler//line_end//"libraries: "//info%libraries &
+                    //line_end//"started: "//info%started//", threads " &
+                    //integer_text(info%n_threads)//line_end//line_end//"deck "//info%deck_name &
+                    //line_end//info%deck_text//line_end//"end of deck"//line_end, error)
+    if (allocated(error)) return
+    call write_line(log%file, model_text(model)//freedom_ratio_text(model)//set_text(model%mesh), &
+                    error)
+  end subroutine open_log
+
+  !> Writes a text as it is.
+  subroutine log_message(log, message, error)
+    type(run_log_t), intent(in) :: log               !! open
+    character(*), intent(in) :: message              !! without line end
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+
+    call write_line(log%file, message, error)
+  end subroutine log_message
+
+  !> Writes the iterations of an attempt at an increment and its outcome.
+  subroutine log_attempt(log, state, report, error)
+    type(run_log_t), intent(inout) :: log            !! adds up iterations and seconds
+    type(run_state_t), intent(in)  :: state          !! step, increment, attempt
+    type(newton_report_t), intent(in) :: report      !! of the attempt
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+    character(:), allocatable :: text
+    integer :: i
+
+    log%n_attempts = log%n_attempts + 1
+    log%n_iterations = log%n_iterations + report%n_iterations
+    if (allocated(report%seconds)) log%seconds = log%seconds + sum(report%seconds, 2)
+    text = "step "//integer_text(state%step)//" increment "//integer_text(state%increment) &
+           //" attempt "//integer_text(state%attempt)//", time "//real_text(state%time)//", size " &
+           //real_text(state%size)
+    if (allocated(report%residual)) then
+      do i = 0, ubound(report%residual, 1)
+        text = text//line_end//iteration_text(report, i)
+      end do
+    end if
+    text = text//line_end//"  "//outcome_text(report%outcome)//" after " &
+           //integer_text(report%n_iterations)//" iterations"
+    if (report%outcome /= outcome_converged) text = text//worst_text(report)
+    call write_line(log%file, text, error)
+  end subroutine log_attempt
+
+  !> One iteration of Newton's method.
+  pure function iteration_text(report, i) result(text)
+    type(newton_report_t), intent(in) :: report !! of the attempt
+    integer, intent(in) :: i                    !! 0: before the first correction
+    character(:), allocatable :: text
+    character(40) :: buffer
+
+    write (buffer, "(a,i4,a,es12.5)") "  iteration ", i, " residual ", report%residual(i)
+    text = trim(buffer)
+    if (allocated(report%n_plastic)) then
+      if (i <= ubound(report%n_plastic, 1)) then
+        text = text//" plastic points "//integer_text(report%n_plastic(i))
+      end if
+    end if
+    if (i == 0 .or. .not. allocated(report%backtracks)) return
+    if (i > size(report%backtracks)) return
+    if (report%backtracks(i) > 0) then
+      text = text//" backtracks "//integer_text(report%backtracks(i))
+    end if
+  end function iteration_text
+
+  !> Where an attempt failed.
+  pure function worst_text(report) result(text)
+    type(newton_report_t), intent(in) :: report !! of the attempt
+    character(:), allocatable :: text
+
+    text = ""
+    if (report%worst_node > 0) text = text//", worst node "//integer_text(report%worst_node)
+    if (report%worst_element > 0) text = text//", element "//integer_text(report%worst_element)
+    if (report%worst_point > 0) text = text//", point "//integer_text(report%worst_point)
+  end function worst_text
+
+  !> Writes resultants of the node sets, verdicts and the time spent.
+  subroutine log_summary(log, model, state, verdicts, exit_code, error)
+    type(run_log_t), intent(in) :: log               !! open
+    type(model_t), intent(in) :: model               !! node sets
+    type(run_state_t), intent(in) :: state           !! at the end of the run
+    type(verdict_t), intent(in) :: verdicts(:)       !! of all expectations
+    integer, intent(in) :: exit_code                 !! of the program
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+    character(:), allocatable :: text
+    real(dp) :: total_cpu
+    integer :: i
+
+    text = line_end//"summary"//line_end//resultant_text(model, state)
+    do i = 1, size(verdicts)
+      text = text//verdict_line(verdicts(i))//line_end
+    end do
+    call cpu_time(total_cpu)
+    text = text//"expectations: "//integer_text(size(verdicts))//", failed " &
+           //integer_text(n_failed_expectations(verdicts))//line_end//"increments: " &
+           //integer_text(state%increment_total)//" accepted of "//integer_text(log%n_attempts) &
+           //" attempts, "//integer_text(log%n_iterations)//" iterations"//line_end &
+           //"lost points: "//integer_text(state%n_lost)//", extrapolated " &
+           //integer_text(state%n_extrapolated)//line_end//seconds_text(log, total_cpu) &
+           //"wall time: "//real_text(state%wall_seconds)//" s"//line_end &
+           //"exit code: "//integer_text(exit_code)
+    call write_line(log%file, text, error)
+  end subroutine log_summary
+
+  !> CPU seconds by kind of work.
+  pure function seconds_text(log, total) result(text)
+    type(run_log_t), intent(in) :: log !! seconds of Newton's method
+    real(dp), intent(in) :: total      !! of the program [s]
+    character(:), allocatable :: text
+
+    text = "CPU seconds: kinematics "//real_text(log%seconds(1)) &
+           //", stress "//real_text(log%seconds(2))//", assembly "//real_text(log%seconds(3)) &
+           //", factorisation "//real_text(log%seconds(4))//", solve "//real_text(log%seconds(5)) &
+           //", everything "//real_text(total)//line_end
+  end function seconds_text
+
+  !> Sums of the reactions over the node sets that have any.
+  pure function resultant_text(model, state) result(text)
+    type(model_t), intent(in) :: model     !! node sets
+    type(run_state_t), intent(in) :: state !! reactions
+    character(:), allocatable :: text
+    integer :: i, j
+
+    text = ""
+    do i = 1, size(model%mesh%node_set)
+      associate (set => model%mesh%node_set(i))
+        if (all(abs(state%reaction(:, set%item)) <= 0.0_dp)) cycle
+        text = text//"reaction of "//set%name//":"
+        do j = 1, size(state%reaction, 1)
+          text = text//" "//real_text(sum(state%reaction(j, set%item)))
+        end do
+        text = text//line_end
+      end associate
+    end do
+  end function resultant_text
+
+  !> An outcome of Newton's method in words.
+  pure function outcome_text(outcome) result(text)
+    integer, intent(in) :: outcome !! outcome_*
+    character(:), allocatable :: text
+    character(40), parameter :: words(0:6) = [character(40) :: "converged", "an element inverted", &
+      "the stress update failed", "stagnated", "too many iterations", "the tangent is singular", &
+      "the linear solver ran out of memory"]
+
+    text = "unknown outcome"
+    if (outcome >= 0 .and. outcome <= ubound(words, 1)) text = trim(words(outcome))
+  end function outcome_text
+
+  !> Closes the log.
+  subroutine close_log(log, error)
+    type(run_log_t), intent(inout) :: log            !! closed
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+
+    call close_text_file(log%file, error)
+  end subroutine close_log
+
+end module mpm_run_log

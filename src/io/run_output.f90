@@ -1,0 +1,143 @@
+!> All output of a run, driven by three events: an attempt, an accepted increment, the end.
+module mpm_run_output
+  use mpm_equilibrium, only: newton_report_t, outcome_converged
+  use mpm_error, only: error_t
+  use mpm_expectations, only: collect_expectations, evaluate_expectations, verdict_t
+  use mpm_hdf5_file, only: flush_hdf5_file
+  use mpm_history, only: open_history, units_of, write_history_row
+  use mpm_history_columns, only: history_column_t, history_columns, history_values
+  use mpm_kinds, only: dp
+  use mpm_ledger, only: point_ledger
+  use mpm_material_points, only: points_t
+  use mpm_mesh, only: mesh_t
+  use mpm_model, only: model_t
+  use mpm_progress, only: end_progress, show_progress
+  use mpm_result_paths, only: result_paths_t
+  use mpm_results_file, only: close_results, is_field_output_due, open_results, results_file_t, &
+                              write_increment_fields
+  use mpm_run_log, only: close_log, log_attempt, log_summary, open_log, outcome_text, run_log_t
+  use mpm_run_state, only: estimated_time_left, run_info_t, run_state_t
+  use mpm_run_tables, only: append_history, append_iterations, append_ledger, close_tables, &
+                            open_tables, run_tables_t
+  use mpm_status_file, only: open_status, status_file_t, write_status
+  use mpm_text_file, only: close_text_file, text_file_t
+  implicit none
+  private
+  public :: run_output_t, close_output, open_output, write_attempt, write_increment
+
+  !> Everything that is open during a run.
+  type :: run_output_t
+    type(run_log_t)      :: log                      !! JOB.log
+    type(status_file_t)  :: status                   !! JOB.sta
+    type(text_file_t)    :: history                  !! JOB_history.csv
+    type(results_file_t) :: results                  !! JOB.vtkhdf and JOB_mesh.vtkhdf
+    type(run_tables_t)   :: tables                   !! group /tessera of JOB.vtkhdf
+    type(history_column_t), allocatable :: column(:) !! of *HISTORY
+    type(verdict_t), allocatable :: verdict(:)       !! of *EXPECT
+    logical :: quiet = .false.                       !! no progress on stderr
+  end type run_output_t
+
+contains
+
+  !> Opens all files of a run. Earlier results are overwritten: see mpm_result_paths before.
+  subroutine open_output(output, paths, model, info, error)
+    type(run_output_t), intent(out) :: output        !! open
+    type(result_paths_t), intent(in) :: paths        !! files of the job
+    type(model_t), intent(in) :: model               !! at time zero
+    type(run_info_t), intent(in) :: info             !! deck and program
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+
+    output%quiet = info%quiet
+    output%column = history_columns(model)
+    call collect_expectations(output%verdict, model)
+    call open_log(output%log, paths%log, model, info, error)
+    if (allocated(error)) return
+    call open_status(output%status, paths%status, model, error)
+    if (allocated(error)) return
+    call open_history(output%history, paths%history, output%column, model, info, error)
+    if (allocated(error)) return
+    call open_results(output%results, paths%points, paths%mesh, model, error)
+    if (allocated(error)) return
+    call open_tables(output%tables, output%results%points%file, output%column, info, &
+                     units_of(model), error)
+  end subroutine open_output
+
+  !> Writes what Newton's method did in an attempt, converged or not.
+  subroutine write_attempt(output, state, report, error)
+    type(run_output_t), intent(inout) :: output      !! open
+    type(run_state_t), intent(in) :: state           !! after the attempt
+    type(newton_report_t), intent(in) :: report      !! of the attempt
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+
+    call log_attempt(output%log, state, report, error)
+    if (allocated(error)) return
+    call write_status(output%status, state, outcome_text(report%outcome), error)
+    if (allocated(error)) return
+    call append_iterations(output%tables, output%results%points%file, state, report, error)
+    if (report%outcome /= outcome_converged) then
+      call flush_hdf5_file(output%results%points%file, error)
+    end if
+    if (output%quiet) return
+    call show_progress(state, estimated_time_left(state, output%status%end_time))
+  end subroutine write_attempt
+
+  !> Writes an accepted increment; before the first one, the state at time zero.
+  subroutine write_increment(output, model, mesh, points, state, error)
+    type(run_output_t), intent(inout) :: output      !! open
+    type(model_t), intent(in)     :: model           !! steps and patches
+    type(mesh_t), intent(in)      :: mesh            !! where it is now
+    type(points_t), intent(in)    :: points          !! converged state
+    type(run_state_t), intent(in) :: state           !! after the increment
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+    real(dp), allocatable :: values(:)
+    logical :: due
+
+    allocate (values(size(output%column)))
+    values(:) = history_values(output%column, points, model%patches, state)
+    call write_history_row(output%history, state, values, error)
+    if (allocated(error)) return
+    call append_history(output%tables, output%results%points%file, state, values, error)
+    if (allocated(error)) return
+    call append_ledger(output%tables, output%results%points%file, state, point_ledger(points), error)
+    if (allocated(error)) return
+    call evaluate_expectations(output%verdict, points, model%patches, state)
+    due = state%step == 0
+    if (.not. due) due = is_field_output_due(model%step(state%step), state)
+    if (due) then
+      call write_increment_fields(output%results, model, mesh, points, state, error)
+    else
+      call flush_hdf5_file(output%results%points%file, error)
+    end if
+  end subroutine write_increment
+
+  !> Writes the summary and closes everything.
+  subroutine close_output(output, model, state, exit_code, error)
+    type(run_output_t), intent(inout) :: output      !! closed
+    type(model_t), intent(in) :: model               !! node sets
+    type(run_state_t), intent(in) :: state           !! at the end of the run
+    integer, intent(in) :: exit_code                 !! of the program
+    type(error_t), allocatable, intent(out) :: error !! exit_file: the first one that occurs
+    type(error_t), allocatable :: failure
+
+    if (.not. output%quiet) call end_progress()
+    call log_summary(output%log, model, state, output%verdict, exit_code, error)
+    call close_log(output%log, failure)
+    call keep_first(error, failure)
+    call close_text_file(output%status%file, failure)
+    call keep_first(error, failure)
+    call close_text_file(output%history, failure)
+    call keep_first(error, failure)
+    call close_tables(output%tables)
+    call close_results(output%results, failure)
+    call keep_first(error, failure)
+  end subroutine close_output
+
+  !> Keeps an error unless there is one already.
+  pure subroutine keep_first(error, failure)
+    type(error_t), allocatable, intent(inout) :: error   !! the first one
+    type(error_t), allocatable, intent(inout) :: failure !! a later one
+
+    if (.not. allocated(error)) call move_alloc(failure, error)
+  end subroutine keep_first
+
+end module mpm_run_output
