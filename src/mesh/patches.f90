@@ -1,19 +1,15 @@
 !> Patches of elements over which F-bar averages the volume change.
 module mpm_patches
-  use, intrinsic :: iso_c_binding, only: c_int, c_int32_t, c_null_ptr
   use mpm_error, only: error_t, exit_model, make_error
+  use mpm_graph_partition, only: partition_graph
   use mpm_kinds, only: dp
   use mpm_mesh, only: mesh_t
-  use mpm_metis_binding, only: metis_n_options, metis_ok, metis_option_seed, metis_part_graph_kway, &
-    metis_set_default_options
   use mpm_text, only: integer_text
   implicit none
   private
   public :: patches_t
   public :: disconnected_patch, patch_size_range, patches_from_graph, patches_from_parents
   public :: patches_of_single_elements
-
-  integer(c_int32_t), parameter :: seed = 20 !! of the partition: the same mesh gives the same patches
 
   !> Each element belongs to exactly one patch; compressed lists.
   type :: patches_t
@@ -68,7 +64,7 @@ contains
       call patches_of_single_elements(patches, mesh%n_el)
       return
     end if
-    call partition_graph(mesh, max(1, nint(real(mesh%n_el, dp)/real(patch_size, dp))), part, error)
+    call partition_graph(mesh, patch_size, part, error)
     if (allocated(error)) return
     call label_components(mesh, part, component, n_component)
     call join_small(mesh, component, n_component, patch_size)
@@ -131,39 +127,6 @@ contains
       next(p) = next(p) + 1
     end do
   end subroutine list_elements
-
-  !> Parts of about equal size of the graph of face neighbours.
-  subroutine partition_graph(mesh, n_part, part, error)
-    type(mesh_t), intent(in) :: mesh                 !! mesh with neighbours
-    integer, intent(in)      :: n_part               !! parts wanted
-    integer, allocatable, intent(out) :: part(:)     !! (n_el)  part of each element
-    type(error_t), allocatable, intent(out) :: error !! failure of METIS
-
-    integer(c_int32_t) :: options(metis_n_options), cut
-    integer(c_int) :: status
-    integer(c_int32_t), allocatable :: first(:), adjacent(:), part_c(:)
-    integer :: e
-
-    allocate (part(mesh%n_el), source=1)
-    if (n_part == 1) return
-    allocate (first(mesh%n_el + 1), part_c(mesh%n_el))
-    first(1) = 0_c_int32_t
-    do e = 1, mesh%n_el
-      first(e + 1) = first(e) + int(count(mesh%neighbour(:, e) > 0), c_int32_t)
-    end do
-    adjacent = int(pack(mesh%neighbour, mesh%neighbour > 0) - 1, c_int32_t)
-    status = metis_set_default_options(options)
-    options(metis_option_seed) = seed
-    status = metis_part_graph_kway(int(mesh%n_el, c_int32_t), 1_c_int32_t, first, adjacent, &
-      c_null_ptr, c_null_ptr, c_null_ptr, int(n_part, c_int32_t), c_null_ptr, c_null_ptr, options, &
-      cut, part_c)
-    if (status /= metis_ok) then
-      call make_error(error, exit_model, "METIS failed with status "//integer_text(int(status))// &
-        " on the patches: expected a partition of the mesh")
-      return
-    end if
-    part = int(part_c) + 1
-  end subroutine partition_graph
 
   !> Numbers the connected pieces of equal label, in the order of their first elements.
   pure subroutine label_components(mesh, label, component, n_component)
