@@ -8,7 +8,7 @@ module mpm_deck_card
   public :: has_parameter, parameter_index, parameter_text, parameter_integer, parameter_real
   public :: parameter_choice, parameter_reals, parameter_path
   public :: field_count, field_text, field_integer, field_real, field_is_integer, physical_line
-  public :: folder_of, append_field, append_line, append_card
+  public :: folder_of, append_field, append_line, append_card, append_file, append_parameter
 
   !> A token of a line. Of a quoted string the columns are those between the quotes.
   type :: deck_field_t
@@ -228,6 +228,33 @@ contains
     n = n + 1
     list(n) = item
   end subroutine append_field
+
+  !> Appends to the list of files.
+  pure subroutine append_file(list, path)
+    type(deck_file_t), allocatable, intent(inout) :: list(:) !! one longer on return
+    character(*), intent(in) :: path                         !! file
+    type(deck_file_t), allocatable :: longer(:)
+    integer :: i
+
+    allocate (longer(size(list) + 1))
+    do i = 1, size(list)
+      call move_alloc(list(i)%path, longer(i)%path)
+    end do
+    longer(size(longer))%path = path
+    call move_alloc(longer, list)
+  end subroutine append_file
+
+  !> Appends to a list of parameters.
+  pure subroutine append_parameter(list, item)
+    type(deck_parameter_t), allocatable, intent(inout) :: list(:) !! one longer on return
+    type(deck_parameter_t), intent(in) :: item                    !! new entry
+    type(deck_parameter_t), allocatable :: longer(:)
+
+    allocate (longer(size(list) + 1))
+    longer(:size(list)) = list
+    longer(size(longer)) = item
+    call move_alloc(longer, list)
+  end subroutine append_parameter
 
   !> Moves a line to the end of a list that grows geometrically; the text is not copied.
   pure subroutine append_line(list, n, item)

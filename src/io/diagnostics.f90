@@ -70,7 +70,7 @@ contains
     type(diagnostics_t), intent(inout) :: diag      !! gets one error more
     type(deck_t), intent(in)           :: deck      !! any deck
     integer, intent(in)                :: i_card    !! card of the deck
-    character(*), intent(in)           :: name      !! canonical name; the keyword if it is not there
+    character(*), intent(in)           :: name      !! canonical; keyword if not there
     character(*), intent(in)           :: message   !! what is wrong and what was expected
     character(*), intent(in), optional :: hint      !! text behind the caret: did you mean ...
 
@@ -82,7 +82,7 @@ contains
     type(diagnostics_t), intent(inout) :: diag      !! gets one warning more
     type(deck_t), intent(in)           :: deck      !! any deck
     integer, intent(in)                :: i_card    !! card of the deck
-    character(*), intent(in)           :: name      !! canonical name; the keyword if it is not there
+    character(*), intent(in)           :: name      !! canonical; keyword if not there
     character(*), intent(in)           :: message   !! what is odd
     character(*), intent(in), optional :: hint      !! text behind the caret
 
@@ -160,7 +160,7 @@ contains
     end associate
   end function place_of_keyword
 
-  !> The place of a parameter's value, of its name if it has none, of the keyword if it is not there.
+  !> The place of a parameter's value, or else of its name, or else of the keyword.
   pure function place_of_parameter(deck, i_card, name) result(place)
     type(deck_t), intent(in) :: deck   !! any deck
     integer, intent(in)      :: i_card !! card of the deck
@@ -290,7 +290,6 @@ contains
     if (place%line > 0) text = text//integer_text(place%line)//":"//integer_text(place%first)//":"
     text = text//trim(merge(" error:  ", " warning:", is_error))//" "//message
     if (place%line == 0 .or. len_trim(place%text) == 0) then
-      if (present(hint)) text = text//" ("//hint//")"
       return
     end if
     write (number, "(i5,1x)") place%line
@@ -300,7 +299,7 @@ contains
     pointer_line = blanks_below(place%text(cut + 1:min(len(place%text), place%first - 1)))
     pointer_line = pointer_line//"^"//repeat("~", max(width, 1) - 1)
     if (cut > 0) pointer_line = "   "//pointer_line
-    if (present(hint)) pointer_line = pointer_line//" "//hint
+    if (present(hint)) pointer_line = trim(pointer_line//" "//hint)
     text = text//new_line("a")//number//"| "//excerpt(place%text, cut) &
            //new_line("a")//"      | "//pointer_line
   end function formatted
