@@ -89,8 +89,9 @@ contains
     real(dp) :: before
 
     before = constraint%start
-    if (increment%start > 0.0_dp) before = prescribed_total(constraint, increment%start, &
-                                                            increment%period, amplitudes)
+    if (increment%start > 0.0_dp) then
+      before = prescribed_total(constraint, increment%start, increment%period, amplitudes)
+    end if
     change = prescribed_total(constraint, increment%start + increment%size, increment%period, &
                               amplitudes) - before
   end function prescribed_increment

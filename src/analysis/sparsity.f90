@@ -275,8 +275,8 @@ contains
         do i = 1, n_dim
           k = k + 1
           position(k) = -1_ip
-          if (equations(j) > 0 .and. offset(i, nodes(a)) >= 0) &
-            position(k) = matrix%col_ptr(equations(j) - 1) + int(offset(i, nodes(a)), ip)
+          if (equations(j) == 0 .or. offset(i, nodes(a)) < 0) cycle
+          position(k) = matrix%col_ptr(equations(j) - 1) + int(offset(i, nodes(a)), ip)
         end do
       end do
     end do

@@ -10,6 +10,7 @@ module mpm_openblas_binding
     !> Sets the number of threads of every later BLAS call of the process.
     subroutine openblas_set_num_threads(n_threads) bind(c, name="openblas_set_num_threads")
       import :: c_int
+      implicit none
       integer(c_int), value :: n_threads !! at least 1
     end subroutine openblas_set_num_threads
 

@@ -1,4 +1,5 @@
 !> C interfaces of UMFPACK 5 for real matrices with 64-bit indices; no logic.
+! allow(assumed-size)
 module mpm_umfpack_binding
   use, intrinsic :: iso_c_binding, only: c_double, c_long, c_ptr
   implicit none
@@ -31,21 +32,23 @@ module mpm_umfpack_binding
     !> Fills the controls with their defaults.
     subroutine umfpack_dl_defaults(control) bind(c, name="umfpack_dl_defaults")
       import :: c_double
-      real(c_double), intent(out) :: control(0:*) !! (0:umfpack_control-1)
+      implicit none
+      real(c_double), intent(out) :: control(0:19) !! controls
     end subroutine umfpack_dl_defaults
 
     !> Orders the columns and analyses the pattern.
     function umfpack_dl_symbolic(n_row, n_col, col_ptr, row, val, symbolic, control, info) &
       bind(c, name="umfpack_dl_symbolic") result(status)
       import :: c_double, c_long, c_ptr
+      implicit none
       integer(c_long), value :: n_row              !! rows
       integer(c_long), value :: n_col              !! columns
       integer(c_long), intent(in) :: col_ptr(0:*)  !! (0:n)
       integer(c_long), intent(in) :: row(0:*)      !! (0:nnz-1)
       real(c_double), intent(in)  :: val(0:*)      !! (0:nnz-1)
       type(c_ptr), intent(out)    :: symbolic      !! handle of the analysis
-      real(c_double), intent(in)  :: control(0:*)  !! (0:umfpack_control-1)
-      real(c_double), intent(out) :: info(0:*)     !! (0:umfpack_info-1)
+      real(c_double), intent(in)  :: control(0:19) !! controls
+      real(c_double), intent(out) :: info(0:89)    !! statistics
       integer(c_long) :: status                    !! status_*
     end function umfpack_dl_symbolic
 
@@ -53,13 +56,14 @@ module mpm_umfpack_binding
     function umfpack_dl_numeric(col_ptr, row, val, symbolic, numeric, control, info) &
       bind(c, name="umfpack_dl_numeric") result(status)
       import :: c_double, c_long, c_ptr
+      implicit none
       integer(c_long), intent(in) :: col_ptr(0:*)  !! (0:n)
       integer(c_long), intent(in) :: row(0:*)      !! (0:nnz-1)
       real(c_double), intent(in)  :: val(0:*)      !! (0:nnz-1)
       type(c_ptr), value          :: symbolic      !! handle of the analysis
       type(c_ptr), intent(out)    :: numeric       !! handle of the factors
-      real(c_double), intent(in)  :: control(0:*)  !! (0:umfpack_control-1)
-      real(c_double), intent(out) :: info(0:*)     !! (0:umfpack_info-1)
+      real(c_double), intent(in)  :: control(0:19) !! controls
+      real(c_double), intent(out) :: info(0:89)    !! statistics
       integer(c_long) :: status                    !! status_*
     end function umfpack_dl_numeric
 
@@ -67,6 +71,7 @@ module mpm_umfpack_binding
     function umfpack_dl_solve(system, col_ptr, row, val, x, rhs, numeric, control, info) &
       bind(c, name="umfpack_dl_solve") result(status)
       import :: c_double, c_long, c_ptr
+      implicit none
       integer(c_long), value :: system             !! which system, system_a
       integer(c_long), intent(in) :: col_ptr(0:*)  !! (0:n)
       integer(c_long), intent(in) :: row(0:*)      !! (0:nnz-1)
@@ -74,20 +79,22 @@ module mpm_umfpack_binding
       real(c_double), intent(out) :: x(*)          !! (n)  solution
       real(c_double), intent(in)  :: rhs(*)        !! (n)  right-hand side
       type(c_ptr), value          :: numeric       !! handle of the factors
-      real(c_double), intent(in)  :: control(0:*)  !! (0:umfpack_control-1)
-      real(c_double), intent(out) :: info(0:*)     !! (0:umfpack_info-1)
+      real(c_double), intent(in)  :: control(0:19) !! controls
+      real(c_double), intent(out) :: info(0:89)    !! statistics
       integer(c_long) :: status                    !! status_*
     end function umfpack_dl_solve
 
     !> Releases an analysis and sets its handle to null.
     subroutine umfpack_dl_free_symbolic(symbolic) bind(c, name="umfpack_dl_free_symbolic")
       import :: c_ptr
+      implicit none
       type(c_ptr), intent(inout) :: symbolic !! handle
     end subroutine umfpack_dl_free_symbolic
 
     !> Releases factors and sets their handle to null.
     subroutine umfpack_dl_free_numeric(numeric) bind(c, name="umfpack_dl_free_numeric")
       import :: c_ptr
+      implicit none
       type(c_ptr), intent(inout) :: numeric !! handle
     end subroutine umfpack_dl_free_numeric
 
