@@ -30,7 +30,7 @@ module mpm_hdf5_series
   type :: series_layout_t
     integer :: kind = kind_float64     !! kind_*
     integer :: n_columns = 0           !! 0: a row is a scalar, the dataset has one dimension
-    integer :: chunk_rows = 1024       !! rows stored together
+    integer :: chunk_rows = 256        !! rows stored together
     logical :: compressed = .false.    !! shuffle and deflate
   end type series_layout_t
 

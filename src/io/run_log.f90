@@ -89,9 +89,9 @@ contains
 
     write (buffer, "(a,i4,a,es12.5)") "  iteration ", i, " residual ", report%residual(i)
     text = trim(buffer)
-    if (allocated(report%n_plastic)) then
-      if (i <= ubound(report%n_plastic, 1)) then
-        text = text//" plastic points "//integer_text(report%n_plastic(i))
+    if (allocated(report%flowing)) then
+      if (i <= ubound(report%flowing, 1)) then
+        text = text//" plastic points "//integer_text(report%flowing(i))
       end if
     end if
     if (i == 0 .or. .not. allocated(report%backtracks)) return
