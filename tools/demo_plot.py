@@ -64,11 +64,10 @@ def draw(curves, path):
 def summary(label, settlement, reaction):
     rise = rise_over_second_half(settlement, reaction)
     if rise > STILL_RISING:
-        limit = f"none: locks, {reaction[-1]:.3f} kN and rising"
+        limit = f"no limit load: {reaction[-1]:.3f} kN at {settlement[-1]:g} mm, still rising"
     else:
-        limit = f"{reaction.max():.3f} kN"
-    over = f"({rise:+.1%} over the last {settlement[-1] / 2:g} mm)"
-    return f"  {label:<13} limit load {limit}  {over}"
+        limit = f"limit load {reaction.max():.3f} kN"
+    return f"  {label:<13} {limit} ({rise:+.1%} over the last {settlement[-1] / 2:g} mm)"
 
 
 def main():
