@@ -23,8 +23,8 @@ module pf_compare
     real(real64) :: tolerance = 0          !! absolute tolerance of op_eq and op_ne
   end type assertion_t
 
-  !> Fails the running test unless the relation holds for every element; one expected value stands for
-  !! all elements, and shapes must agree otherwise.
+  !> Fails the running test unless the relation holds for every element; one expected value stands
+  !! for all elements, and shapes must agree otherwise.
   interface compare
     module procedure compare_character, compare_integer, compare_logical, compare_real
   end interface compare
@@ -77,9 +77,10 @@ contains
       j = min(i, size(expected))
       if (holds_real(a, expected(j), actual(i))) cycle
       difference = ""
-      if (a%op == op_eq .and. is_finite(expected(j)) .and. is_finite(actual(i))) &
+      if (a%op == op_eq .and. is_finite(expected(j)) .and. is_finite(actual(i))) then
         write (difference, "(a, g0, a, g0, a)") "<", actual(i) - expected(j), &
           "> (greater than tolerance of ", a%tolerance, ")"
+      end if
       call fail(a, i, text_of_real(expected(j)), text_of_real(actual(i)), trim(difference))
       return
     end do
@@ -169,12 +170,14 @@ contains
     end select
   end function holds_order
 
-  logical function conformable(a)
+  ! Reports shapes that differ.
+  logical function conformable(a) result(same)
     type(assertion_t), intent(in) :: a
 
-    conformable = size(a%expected) == 0
-    if (.not. conformable) conformable = all(a%expected == a%actual)
-    if (.not. conformable) call throw(a%message // "Arrays not conformable" &
+    same = size(a%expected) == 0
+    if (.not. same) same = all(a%expected == a%actual)
+    if (same) return
+    call throw(a%message // "Arrays not conformable" &
       // nl // "    Expected shape: " // list(a%expected) &
       // nl // "      Actual shape: " // list(a%actual), a%location)
   end function conformable
@@ -235,21 +238,21 @@ contains
     text = trim(buffer)
   end function text_of_real
 
-  pure logical function is_finite(x)
+  pure logical function is_finite(x) result(finite)
     real(real64), intent(in) :: x
 
-    is_finite = .false.
-    if (.not. is_nan(x)) is_finite = ieee_is_finite(x)
+    finite = .false.
+    if (.not. is_nan(x)) finite = ieee_is_finite(x)
   end function is_finite
 
-  ! By the bits: any comparison of a signalling NaN would trap in a checked build, and end the run where
-  ! a message is wanted.
-  pure logical function is_nan(x)
+  ! By the bits: any comparison of a signalling NaN would trap in a checked build, and end the run
+  ! where a message is wanted.
+  pure logical function is_nan(x) result(nan)
     real(real64), intent(in) :: x
 
     integer(int64), parameter :: infinity = int(z"7FF0000000000000", int64)
 
-    is_nan = ibclr(transfer(x, infinity), 63) > infinity
+    nan = ibclr(transfer(x, infinity), 63) > infinity
   end function is_nan
 
 end module pf_compare

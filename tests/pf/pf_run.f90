@@ -1,7 +1,7 @@
 !> Runs the tests of a suite and counts them: the part of the stand-in for pFUnit that holds state.
 !!
-!! An assertion has no argument through which it could report to the runner, so the running test, its
-!! messages and the counters are variables of this module.
+!! An assertion has no argument through which it could report to the runner, so the running test,
+!! its messages and the counters are variables of this module.
 module pf_run
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: int64, output_unit
@@ -19,11 +19,13 @@ module pf_run
     !> Ends the program with any status: a Fortran 2008 stop code must be a constant.
     subroutine c_exit(status) bind(c, name="exit")
       import :: c_int
+      implicit none
       integer(c_int), value :: status !! exit code
     end subroutine c_exit
 
     !> A test, or what runs before or after it.
     subroutine procedure_without_arguments()
+      implicit none
     end subroutine procedure_without_arguments
   end interface
 
@@ -117,8 +119,8 @@ contains
     if (n_run == 0) then
       write (output_unit, "(a)") " FAILURES!!!", "No test ran."
     else if (n_failed == 0) then
-      write (output_unit, "(a, /, a, i0, a)") " OK", " (", n_run, trim(merge(" test)  ", " tests) ", &
-        n_run == 1))
+      write (output_unit, "(a, /, a, i0, a)") " OK", " (", n_run, &
+        trim(merge(" test) ", " tests)", n_run == 1))
     else
       write (output_unit, "(a, /, 3(a, i0))") " FAILURES!!!", "Tests run: ", n_run, &
         ", Failures: ", n_failed, ", Errors: ", 0
