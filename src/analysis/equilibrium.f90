@@ -37,7 +37,8 @@ module mpm_equilibrium
     integer :: worst_node = 0              !! node of the largest residual
     integer :: worst_element = 0           !! inverted element or element of a failed point, 0 if none
     integer :: worst_point = 0             !! failed point, 0 if none
-    integer, allocatable :: n_plastic(:)   !! (0:n_iterations)  points that flow
+    integer :: n_plastic = 0               !! points that flowed in the last evaluation
+    integer, allocatable :: flowing(:)     !! (0:n_iterations)  points that flow
   end type newton_report_t
 
   !> The state of Newton's method between two corrections.
@@ -168,7 +169,8 @@ contains
     newton%scale = norm2(merge(system%f_int, system%f_ext, system%dofs%fixed .and. &
                                spread(system%dofs%active, 1, size(system%u, 1))))
     report%residual(iteration) = relative(newton%norm, newton%scale)
-    report%n_plastic(iteration) = system%sums%n_plastic
+    report%n_plastic = system%sums%n_plastic
+    report%flowing(iteration) = report%n_plastic
     if (.not. newton%norm <= huge(1.0_dp)) report%outcome = outcome_stagnated
   end subroutine measure
 
@@ -207,7 +209,7 @@ contains
     integer, intent(in) :: max_iterations
 
     allocate (report%residual(0:max_iterations), source=0.0_dp)
-    allocate (report%n_plastic(0:max_iterations), source=0)
+    allocate (report%flowing(0:max_iterations), source=0)
     allocate (report%backtracks(max_iterations), source=0)
     allocate (report%seconds(5, max_iterations), source=0.0_dp)
   end subroutine open_report
@@ -216,12 +218,12 @@ contains
   pure subroutine close_report(report)
     type(newton_report_t), intent(inout) :: report
     real(dp), allocatable :: residual(:)
-    integer, allocatable :: n_plastic(:)
+    integer, allocatable :: flowing(:)
 
     allocate (residual(0:report%n_iterations), source=report%residual(0:report%n_iterations))
     call move_alloc(residual, report%residual)
-    allocate (n_plastic(0:report%n_iterations), source=report%n_plastic(0:report%n_iterations))
-    call move_alloc(n_plastic, report%n_plastic)
+    allocate (flowing(0:report%n_iterations), source=report%flowing(0:report%n_iterations))
+    call move_alloc(flowing, report%flowing)
     report%backtracks = report%backtracks(:report%n_iterations)
     report%seconds = report%seconds(:, :report%n_iterations)
   end subroutine close_report

@@ -11,7 +11,7 @@ module mpm_tangent_check
   use mpm_system, only: body_t, evaluate, evaluation_ok, open_system, system_t
   implicit none
   private
-  public :: tangent_report_t, check_tangent
+  public :: tangent_report_t, check_tangent, compare_tangents
 
   !> What the comparison found.
   type :: tangent_report_t
@@ -50,21 +50,22 @@ contains
     call assemble_tangent(system%tangent, system%map, body%mesh, body%patches, system%kinematics, system%sums)
     difference = system%tangent
     call difference_tangent(difference, skipped, system, body, step_ratio*largest)
-    call compare(report, system%tangent, difference, skipped)
+    call compare_tangents(report, system%tangent, difference, skipped)
   end subroutine check_tangent
 
-  !> Twice the smallest yield strain, or 1e-3 without plasticity.
+  !> Six times the smallest yield strain, or 1e-3 without plasticity.
   pure function random_amplitude(body) result(amplitude)
     type(body_t), intent(in) :: body
     real(dp) :: amplitude !! [-]
     integer :: m
 
-    amplitude = 1.0e-3_dp
+    amplitude = huge(1.0_dp)
     do m = 1, size(body%material)
       if (body%material(m)%law /= law_von_mises) cycle
-      amplitude = min(amplitude, 2.0_dp*body%material(m)%yield_stress(1)/body%material(m)%young)
+      amplitude = min(amplitude, 6.0_dp*body%material(m)%yield_stress(1)/body%material(m)%young)
     end do
-    amplitude = max(amplitude, 1.0e-7_dp)
+    if (amplitude > 1.0_dp) amplitude = 1.0e-3_dp
+    amplitude = min(max(amplitude, 1.0e-7_dp), 0.05_dp)
   end function random_amplitude
 
   !> Size of the smallest active element.
@@ -196,7 +197,7 @@ contains
   end subroutine shift
 
   !> Largest difference over the largest entry of the tangent, in the columns that count.
-  pure subroutine compare(report, tangent, difference, skipped)
+  pure subroutine compare_tangents(report, tangent, difference, skipped)
     type(tangent_report_t), intent(inout) :: report
     type(csc_matrix_t), intent(in) :: tangent, difference
     logical, intent(in) :: skipped(:) !! (n)
@@ -218,6 +219,6 @@ contains
         report%column = j
       end do
     end do
-  end subroutine compare
+  end subroutine compare_tangents
 
 end module mpm_tangent_check

@@ -1,9 +1,10 @@
 !> Where the results of a job go.
 module mpm_result_paths
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
   use mpm_error, only: error_t, exit_file, make_error
   implicit none
   private
-  public :: result_paths_t, existing_results, result_paths
+  public :: result_paths_t, existing_results, make_folder, result_paths
 
   !> The files of a job.
   type :: result_paths_t
@@ -14,7 +15,38 @@ module mpm_result_paths
     character(:), allocatable :: mesh    !! JOB_mesh.vtkhdf
   end type result_paths_t
 
+  interface
+    !> Makes one folder; -1 when it is there already or cannot be made.
+    function c_mkdir(path, mode) bind(c, name="mkdir") result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), value :: mode
+      integer(c_int) :: status
+    end function c_mkdir
+  end interface
+
 contains
+
+  !> Makes a folder and those above it. One that cannot be made is an error with its path; one
+  !! that is there is fine.
+  subroutine make_folder(folder, error)
+    character(*), intent(in) :: folder               !! path, empty = current folder
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+    integer, parameter :: mode = int(o"777")
+    integer(c_int) :: status
+    logical :: exists
+    integer :: i
+
+    if (len_trim(folder) == 0) return
+    do i = 1, len_trim(folder)
+      if (i < len_trim(folder) .and. folder(i:i) /= "/") cycle
+      status = c_mkdir(folder(:i)//c_null_char, int(mode, c_int))
+    end do
+    inquire (file=trim(folder)//"/.", exist=exists)
+    if (status == 0_c_int .or. exists) return
+    call make_error(error, exit_file, "error: folder '"//trim(folder)//"' cannot be made: " &
+                    //"expected a path where a folder may be written")
+  end subroutine make_folder
 
   !> Paths of the files of a job.
   pure function result_paths(folder, job) result(paths)
@@ -60,3 +92,4 @@ contains
   end subroutine refuse_existing
 
 end module mpm_result_paths
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
