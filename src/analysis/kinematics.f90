@@ -7,6 +7,8 @@ module mpm_kinematics
   private
   public :: kinematics_t, allocate_kinematics, compute_kinematics
 
+  real(dp), parameter :: flat = 1.0e-12_dp !! J_e below this is rounding, not volume [-]
+
   !> Element and patch arrays of the increment; entries of inactive elements keep the values of no motion.
   type :: kinematics_t
     real(dp), allocatable :: disp_grad(:, :, :)     !! (3, 3, n_el)  H = dF - I [-]
@@ -36,7 +38,7 @@ contains
   !! Independent per element: the result does not depend on the number of threads.
   subroutine compute_kinematics(kinematics, inverted, mesh, element, u)
     type(kinematics_t), intent(inout) :: kinematics
-    integer, intent(out)     :: inverted   !! first element with J_e <= 0 or not a number, 0 if none
+    integer, intent(out)     :: inverted   !! first element that is flat or inside out, 0 if none
     type(mesh_t), intent(in) :: mesh       !! at the start of the increment
     integer, intent(in)      :: element(:) !! active elements
     real(dp), intent(in)     :: u(:, :)    !! (n_dim, n_node)  displacement of the increment [length]
@@ -53,7 +55,7 @@ contains
       delta_j_m1 = det_m1(h)
       kinematics%disp_grad(:, :, e) = h
       kinematics%delta_j_m1(e) = delta_j_m1
-      if (.not. delta_j_m1 > -1.0_dp) then
+      if (.not. delta_j_m1 > flat - 1.0_dp) then
         inverted = min(inverted, e)
         cycle
       end if
