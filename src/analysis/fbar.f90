@@ -47,11 +47,11 @@ contains
       volume = volume + mesh%volume(e)
       change = change + mesh%volume(e)*kinematics%delta_j_m1(e)
     end do
+    kinematics%weight(element) = 0.0_dp
     if (n_active == 0) return
     theta_m1 = change/volume
     do i = 1, size(element)
       e = element(i)
-      kinematics%weight(e) = 0.0_dp
       if (.not. active(e)) cycle
       if (n_active == 1) then
         call keep_ordinary(kinematics, e)
