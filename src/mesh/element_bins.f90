@@ -14,11 +14,11 @@ module mpm_element_bins
   type :: element_bins_t
     integer  :: n(3) = 0                      !! bins per direction
     real(dp) :: reach = 0.0_dp                !! widening over element size [-]
-    real(dp), allocatable :: plane(:, :)      !! (n+1, n_dim)   planes between bins, ascending [length]
-    integer, allocatable  :: first(:)         !! (n_bin+1)      elements of bin b are element(first(b):first(b+1)-1)
+    real(dp), allocatable :: plane(:, :)      !! (n+1, n_dim)   planes, ascending [length]
+    integer, allocatable  :: first(:)         !! (n_bin+1)      start of each bin in element
     integer, allocatable  :: element(:)       !! (n_entry)      ascending within a bin
     real(dp), allocatable :: box(:, :, :)     !! (n_dim, 2, n_el) widened bounding boxes [length]
-    real(dp), allocatable :: x(:, :)          !! (n_dim, n_node)  coordinates that the bins belong to [length]
+    real(dp), allocatable :: x(:, :)          !! (n_dim, n_node) of the mesh when built [length]
   end type element_bins_t
 
 contains

@@ -9,7 +9,7 @@ module mpm_face_table
   !! mod(i-1, n_dim+1) + 1.
   type :: face_table_t
     integer, allocatable :: key(:, :) !! (n_dim, n_face)  corner nodes, ascending
-    integer, allocatable :: order(:)  !! (n_face)         faces in lexicographic order of their nodes
+    integer, allocatable :: order(:)  !! (n_face)         faces in order of their nodes
   end type face_table_t
 
 contains

@@ -54,7 +54,9 @@ contains
       if (middle < first .or. middle == last) then
         middle = (first + last)/2
       else
-        order(first:last) = [pack(order(first:last), on_left), pack(order(first:last), .not. on_left)]
+        associate (stretch => order(first:last))
+          stretch = [pack(stretch, on_left), pack(stretch, .not. on_left)]
+        end associate
       end if
       call divide(order, first, middle)
       if (allocated(error)) return

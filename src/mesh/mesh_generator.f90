@@ -14,14 +14,14 @@ module mpm_mesh_generator
     integer :: n_dim = 3                    !! 2 or 3
     integer :: order = 1                    !! 1 linear, 2 quadratic
     integer :: split = 6                    !! simplices per cell: 2 or 4 (cross); 5 or 6
-    integer :: orientation = 1              !! 1 or 2: which way the first cell is cut (split 2 and 5)
+    integer :: orientation = 1              !! 1 or 2: way the first cell is cut (split 2, 5)
     real(dp), allocatable :: x(:)           !! (n_x+1)  planes, ascending [length]
     real(dp), allocatable :: y(:)           !! (n_y+1)  planes, ascending [length]
     real(dp), allocatable :: z(:)           !! (n_z+1)  planes, ascending; 3-D only [length]
     character(:), allocatable :: elset      !! name of the set of all elements, ALL if unallocated
   end type box_settings_t
 
-  !> Corners of a cell are numbered 1 + i + 2 j + 4 k. A cell is cut along one diagonal or the other.
+  !> Corners of a cell are numbered 1 + i + 2 j + 4 k. A cell has two diagonals to cut along.
   integer, parameter :: two_triangles(3, 2, 2) = reshape( &
     [1, 2, 4, 1, 4, 3, 1, 2, 3, 2, 4, 3], [3, 2, 2])
   !> Four triangles around the middle of the cell, node 5.

@@ -11,7 +11,7 @@ module mpm_parent_checks
   private
   public :: check_parents
 
-  real(dp), parameter :: off_centre = 0.25_dp !! farthest mid-edge node from the middle, in edge lengths
+  real(dp), parameter :: off_centre = 0.25_dp !! farthest mid-edge node off the middle, in edges
   real(dp), parameter :: flat = 1.0e-14_dp    !! least volume over cubed (2-D: squared) first edge
 
 contains

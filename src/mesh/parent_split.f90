@@ -11,7 +11,7 @@ module mpm_parent_split
   private
   public :: split_parents
 
-  real(dp), parameter :: tie = 1.0e-12_dp !! relative difference below which diagonals are equally long
+  real(dp), parameter :: tie = 1.0e-12_dp !! relative difference of diagonals that are equal
 
   !> Children of a 6-node triangle: the corners, then the middle.
   integer, parameter :: triangle(3, 4) = reshape( &

@@ -83,7 +83,7 @@ contains
     type(mesh_t), intent(in)       :: mesh     !! mesh
     type(locator_t), intent(inout) :: locator  !! bins, made when needed
     type(location_settings_t), intent(in)    :: settings !! what to do outside the mesh
-    integer, intent(inout)         :: host(:)  !! (n)  in 0 where the walk failed, out found elements
+    integer, intent(inout)         :: host(:)  !! (n)  in 0: the walk failed, out found
     type(location_report_t), intent(inout)   :: report   !! counts
 
     real(dp) :: shape(mesh%n_dim + 1)
@@ -148,8 +148,8 @@ contains
     type(mesh_t), intent(in) :: mesh     !! mesh with neighbours and gradients
     real(dp), intent(in)     :: x(:)     !! (n_dim)    position [length]
     integer, intent(in)      :: start    !!            first element, 0 if none
-    integer, intent(in)      :: seed     !!            of the random choices, same walk for the same seed
-    integer, intent(out)     :: element  !!            element that holds the position, 0 if not found
+    integer, intent(in)      :: seed     !!            of the random choices
+    integer, intent(out)     :: element  !!            element around the position, 0 if none
     real(dp), intent(out)    :: shape(:) !! (n_dim+1)  shape functions there [-]
     integer, intent(out)     :: n_steps  !!            elements tested
 

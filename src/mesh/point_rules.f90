@@ -21,8 +21,8 @@ contains
   pure subroutine point_rule(n_dim, n_points, barycentric, weight, found)
     integer, intent(in)                :: n_dim             !! 2 or 3
     integer, intent(in)                :: n_points          !! points per element
-    real(dp), allocatable, intent(out) :: barycentric(:, :) !! (n_dim+1, n)  coordinates, empty if not found [-]
-    real(dp), allocatable, intent(out) :: weight(:)         !! (n)  fractions of the volume, sum 1 [-]
+    real(dp), allocatable, intent(out) :: barycentric(:, :) !! (n_dim+1, n)  coordinates [-]
+    real(dp), allocatable, intent(out) :: weight(:)         !! (n)  fractions, sum 1 [-]
     logical, intent(out)               :: found             !!      whether there is such a rule
 
     found = .true.
