@@ -83,7 +83,7 @@ contains
       if (failed(scanner)) return
     end do
     if (last < n) call fail_at_line(scanner, scanner%line, "the blocks hold "//integer_text(last) &
-      & //" elements; expected "//integer_text(n)//" as announced")
+      & //" elements: expected "//integer_text(n)//" as announced")
     call check_elements(raw, scanner)
   end subroutine read_elements_41
 
@@ -106,7 +106,7 @@ contains
     call check_type(scanner, el_type)
     call next_count(scanner, n, "the number of elements in the block")
     if (first - 1 + n > raw%n_el) call fail_at_token(scanner, "more elements than the " &
-      & //integer_text(raw%n_el)//" announced; expected at most " &
+      & //integer_text(raw%n_el)//" announced: expected at most " &
       & //integer_text(raw%n_el - first + 1)//" in this block")
     call end_line(scanner, "four numbers")
     if (failed(scanner)) return
@@ -160,7 +160,7 @@ contains
 
     if (failed(scanner)) return
     if (type_dimension(el_type) < 0) call fail_at_token(scanner, type_name(el_type) &
-      & //" cannot be used; expected lines, triangles, tetrahedra or points " &
+      & //" cannot be used: expected lines, triangles, tetrahedra or points " &
       & //"(gmsh types 1, 2, 4, 8, 9, 11, 15)")
   end subroutine check_type
 
@@ -177,7 +177,7 @@ contains
       if (failed(scanner)) return
       raw%node(j, i) = find_label(raw%node_table, tag)
       if (raw%node(j, i) == 0) then
-        call fail_at_token(scanner, "node "//integer_text(tag)//" does not exist; expected a " &
+        call fail_at_token(scanner, "node "//integer_text(tag)//" does not exist: expected a " &
                            //"node of $Nodes")
         return
       end if
@@ -196,7 +196,7 @@ contains
     if (failed(scanner)) return
     call build_label_table(table, raw%el_tag, duplicate)
     if (duplicate > 0) call fail_at_line(scanner, raw%el_line(duplicate), "element " &
-      & //integer_text(raw%el_tag(duplicate))//" is defined twice; expected every number once")
+      & //integer_text(raw%el_tag(duplicate))//" is defined twice: expected every number once")
   end subroutine check_elements
 
 end module mpm_gmsh_elements

@@ -49,7 +49,7 @@ contains
       if (failed(scanner)) return
     end do
     if (last < n) call fail_at_line(scanner, scanner%line, "the blocks hold "//integer_text(last) &
-      & //" nodes; expected "//integer_text(n)//" as announced")
+      & //" nodes: expected "//integer_text(n)//" as announced")
     call check_nodes(raw, scanner)
   end subroutine read_nodes_41
 
@@ -69,7 +69,7 @@ contains
     call next_integer(scanner, parametric, "0 or 1, parametric coordinates")
     call next_count(scanner, n, "the number of nodes in the block")
     if (first - 1 + n > raw%n_node) call fail_at_token(scanner, "more nodes than the " &
-      & //integer_text(raw%n_node)//" announced; expected at most " &
+      & //integer_text(raw%n_node)//" announced: expected at most " &
       & //integer_text(raw%n_node - first + 1)//" in this block")
     call end_line(scanner, "four numbers")
     if (failed(scanner)) return
@@ -130,7 +130,7 @@ contains
     if (failed(scanner)) return
     call build_label_table(raw%node_table, raw%node_tag, duplicate)
     if (duplicate > 0) call fail_at_line(scanner, raw%node_line(duplicate), "node " &
-      & //integer_text(raw%node_tag(duplicate))//" is defined twice; expected every number once")
+      & //integer_text(raw%node_tag(duplicate))//" is defined twice: expected every number once")
   end subroutine check_nodes
 
 end module mpm_gmsh_nodes

@@ -74,7 +74,7 @@ contains
       i_first = i
     end do
     if (parent%n_dim < 2) then
-      call fail_at_line(scanner, 0, "the mesh holds no triangles and no tetrahedra; expected " &
+      call fail_at_line(scanner, 0, "the mesh holds no triangles and no tetrahedra: expected " &
                         //"elements of gmsh type 2, 4, 9 or 11")
       return
     end if
@@ -84,7 +84,7 @@ contains
       if (type_order(raw%el_type(i)) /= parent%order) then
         call fail_at_line(scanner, raw%el_line(i), "element "//integer_text(raw%el_tag(i)) &
           & //" is a "//type_name(raw%el_type(i))//" in a mesh of "//trim(merge("linear   ", &
-          & "quadratic", parent%order == 1))//" elements; expected elements of one order")
+          & "quadratic", parent%order == 1))//" elements: expected elements of one order")
         return
       end if
     end do
@@ -141,7 +141,7 @@ contains
     do i = 1, raw%n_node
       if (map%node(i) == 0 .or. abs(raw%x(3, i)) <= tiny(raw%x)) cycle
       call fail_at_line(scanner, raw%node_line(i), "node "//integer_text(raw%node_tag(i)) &
-        & //" of a mesh of triangles has z = "//real_text(raw%x(3, i))//"; expected z = 0, or " &
+        & //" of a mesh of triangles has z = "//real_text(raw%x(3, i))//": expected z = 0, or " &
         & //"tetrahedra")
       return
     end do
@@ -162,7 +162,7 @@ contains
         call fail_at_line(scanner, raw%el_line(i), "element "//integer_text(raw%el_tag(i)) &
           & //" of a boundary group uses node "//integer_text(raw%node_tag(raw%node(j, i))) &
           & //", which no "//trim(merge("triangle   ", "tetrahedron", parent%n_dim == 2)) &
-          & //" uses; expected boundaries that consist of faces of the body")
+          & //" uses: expected boundaries that consist of faces of the body")
         return
       end do
     end do

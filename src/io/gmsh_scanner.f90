@@ -52,9 +52,9 @@ contains
       close (unit)
     end if
     if (status /= 0) then
-      scanner%message = "cannot be read ("//trim(reason)//"); expected a gmsh mesh"
+      scanner%message = "cannot be read ("//trim(reason)//"): expected a gmsh mesh"
     else if (n_byte <= 0) then
-      scanner%message = "the file is empty; expected a gmsh mesh"
+      scanner%message = "the file is empty: expected a gmsh mesh"
     end if
   end subroutine load_text
 
@@ -93,10 +93,10 @@ contains
     character(*), intent(in) :: expected           !! what was expected
 
     if (scanner%section == "") then
-      call fail_at_line(scanner, max(1, scanner%line), "the file ends; expected "//expected)
+      call fail_at_line(scanner, max(1, scanner%line), "the file ends: expected "//expected)
     else
       call fail_at_line(scanner, max(1, scanner%line), "the file ends inside "//scanner%section &
-                        //"; expected "//expected)
+                        //": expected "//expected)
     end if
   end subroutine fail_at_end
 
@@ -155,8 +155,8 @@ contains
     end do
     scanner%at = i
     if (scanner%word_first < i) return
-    if (i > len(scanner%text)) call fail_at_token(scanner, "the file ends; expected "//expected)
-    call fail_at_token(scanner, "the line ends; expected "//expected)
+    if (i > len(scanner%text)) call fail_at_token(scanner, "the file ends: expected "//expected)
+    call fail_at_token(scanner, "the line ends: expected "//expected)
   end subroutine next_word
 
   !> Whether a character separates words.
@@ -183,12 +183,12 @@ contains
     do i = first, scanner%at - 1
       digit = iachar(scanner%text(i:i)) - iachar("0")
       if (digit < 0 .or. digit > 9) then
-        call fail_at_token(scanner, "'"//word(scanner)//"' is not an integer; expected "//expected)
+        call fail_at_token(scanner, "'"//word(scanner)//"' is not an integer: expected "//expected)
         return
       end if
       total = 10*total + digit
       if (total > huge(value)) then
-        call fail_at_token(scanner, "'"//word(scanner)//"' is too large; expected "//expected &
+        call fail_at_token(scanner, "'"//word(scanner)//"' is too large: expected "//expected &
                            //", at most "//integer_text(huge(value)))
         return
       end if
@@ -215,9 +215,9 @@ contains
     character(*), intent(in) :: expected           !! what the count is
 
     call next_integer(scanner, n, expected)
-    if (n < 0) call fail_at_token(scanner, "a count below zero; expected "//expected)
+    if (n < 0) call fail_at_token(scanner, "a count below zero: expected "//expected)
     if (n > bytes_left(scanner)) call fail_at_token(scanner, "the file is too short for this " &
-      & //"count: it was truncated, or the count is wrong; expected "//expected)
+      & //"count: it was truncated, or the count is wrong: expected "//expected)
     if (failed(scanner)) n = 0
   end subroutine next_count
 
@@ -234,7 +234,7 @@ contains
     call parse_real(scanner%text(scanner%word_first:scanner%at - 1), value, ok)
     if (.not. ok) then
       value = 0.0_dp
-      call fail_at_token(scanner, "'"//word(scanner)//"' is not a number; expected "//expected)
+      call fail_at_token(scanner, "'"//word(scanner)//"' is not a number: expected "//expected)
     end if
   end subroutine next_real
 
@@ -254,7 +254,7 @@ contains
     if (failed(scanner)) return
     if (verify(scanner%text(scanner%at:scanner%line_last), blanks) > 0) then
       call next_word(scanner, expected)
-      call fail_at_token(scanner, "unexpected '"//word(scanner)//"'; expected "//expected)
+      call fail_at_token(scanner, "unexpected '"//word(scanner)//"': expected "//expected)
       return
     end if
     scanner%at = scanner%line_last + 2

@@ -24,7 +24,7 @@ contains
     call open_section(scanner)
     if (failed(scanner)) return
     if (scanner%section /= "$MeshFormat") then
-      call fail_at_token(scanner, "not a gmsh mesh; expected $MeshFormat in the first line")
+      call fail_at_token(scanner, "not a gmsh mesh: expected $MeshFormat in the first line")
       return
     end if
     call read_format(raw, scanner)
@@ -38,9 +38,9 @@ contains
     end do
     if (failed(scanner)) return
     if (.not. allocated(raw%node_tag)) call fail_at_line(scanner, scanner%line, &
-      & "the file ends; expected a section $Nodes")
+      & "the file ends: expected a section $Nodes")
     if (.not. allocated(raw%el_tag)) call fail_at_line(scanner, scanner%line, &
-      & "the file ends; expected a section $Elements")
+      & "the file ends: expected a section $Elements")
   end subroutine read_sections
 
   !> Reads the content of the section that was opened.
@@ -55,7 +55,7 @@ contains
       call read_entities(raw, scanner)
     case ("$Nodes")
       if (allocated(raw%node_tag)) then
-        call fail_at_token(scanner, "second section $Nodes; expected one")
+        call fail_at_token(scanner, "second section $Nodes: expected one")
       else if (raw%version == 41) then
         call read_nodes_41(raw, scanner)
       else
@@ -63,16 +63,16 @@ contains
       end if
     case ("$Elements")
       if (allocated(raw%el_tag)) then
-        call fail_at_token(scanner, "second section $Elements; expected one")
+        call fail_at_token(scanner, "second section $Elements: expected one")
       else if (.not. allocated(raw%node_tag)) then
-        call fail_at_token(scanner, "$Elements before $Nodes; expected $Nodes first")
+        call fail_at_token(scanner, "$Elements before $Nodes: expected $Nodes first")
       else if (raw%version == 41) then
         call read_elements_41(raw, scanner)
       else
         call read_elements_22(raw, scanner)
       end if
     case ("$MeshFormat")
-      call fail_at_token(scanner, "second section $MeshFormat; expected one")
+      call fail_at_token(scanner, "second section $MeshFormat: expected one")
     case default
       call skip_section(scanner)
     end select
@@ -104,7 +104,7 @@ contains
     call next_word(scanner, expected)
     if (failed(scanner)) return
     if (scanner%text(scanner%word_first:scanner%at - 1) /= expected) then
-      call fail_at_token(scanner, "more lines than "//scanner%section//" announces; expected " &
+      call fail_at_token(scanner, "more lines than "//scanner%section//" announces: expected " &
                          //expected)
       return
     end if
@@ -140,13 +140,13 @@ contains
     raw%version = nint(10.0_dp*max(0.0_dp, min(100.0_dp, version)))
     if (raw%version /= 22 .and. raw%version /= 41) then
       call fail_at_token(scanner, "format "//scanner%text(scanner%word_first:scanner%at - 1) &
-                         //" is not supported; expected 2.2 or 4.1 (in gmsh: -format msh41)")
+                         //" is not supported: expected 2.2 or 4.1 (in gmsh: -format msh41)")
       return
     end if
     call next_integer(scanner, file_type, "0 for ASCII")
     if (failed(scanner)) return
     if (file_type /= 0) then
-      call fail_at_token(scanner, "the mesh is binary; expected ASCII, 0 here " &
+      call fail_at_token(scanner, "the mesh is binary: expected ASCII, 0 here " &
                          //"(in gmsh: without -bin, Mesh.Binary = 0)")
       return
     end if
@@ -189,7 +189,7 @@ contains
 
     do i = 1, size(raw%group)
       if (same_name(raw%group(i)%name, name)) call fail_at_token(scanner, "the name '"//name &
-        & //"' was given in line "//integer_text(raw%group(i)%line)//" already; expected " &
+        & //"' was given in line "//integer_text(raw%group(i)%line)//" already: expected " &
         & //"different names, case does not count")
     end do
   end subroutine check_name

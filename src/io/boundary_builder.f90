@@ -1,0 +1,323 @@
+!> Builds the prescribed displacements of each step; they carry over from step to step.
+module mpm_boundary_builder
+  use mpm_amplitude, only: amplitude_t, amplitude_value
+  use mpm_build_context, only: at_field, at_parameter, build_context_t, fault, &
+    & is_amplitude, name_hint, place_t, require_node_set, use_name
+  use mpm_deck_card, only: deck_t, field_count, field_integer, field_is_integer, field_real, &
+    & field_text, has_parameter, parameter_choice, parameter_text
+  use mpm_diagnostics, only: quoted
+  use mpm_dof_map, only: constraint_t
+  use mpm_error, only: exit_model
+  use mpm_kinds, only: dp
+  use mpm_label_table, only: build_label_table, find_label, label_table_t
+  use mpm_mesh, only: mesh_t
+  use mpm_model, only: model_t
+  use mpm_text, only: integer_text, real_text, same_name
+  implicit none
+  private
+  public :: boundary_state_t, open_boundary, fix_boundary, begin_boundary_step, add_boundary
+  public :: close_boundary_step, find_amplitude, nodes_of_field, check_operation
+
+  !> What is prescribed at each degree of freedom.
+  type :: boundary_state_t
+    type(label_table_t) :: label                   !! nodes by number
+    logical, allocatable  :: filled(:)             !! (n_node)         belongs to an element with points
+    logical, allocatable  :: fixed(:, :)           !! (n_dim, n_node)  prescribed in the step
+    real(dp), allocatable :: start(:, :)           !! (n_dim, n_node)  total at the start of the step [length]
+    real(dp), allocatable :: value(:, :)           !! (n_dim, n_node)  total at the end of the step [length]
+    integer, allocatable  :: amplitude(:, :)       !! (n_dim, n_node)  amplitude, 0 = ramp
+    integer, allocatable  :: card(:, :)            !! (n_dim, n_node)  card that prescribes it
+    integer, allocatable  :: line(:, :)            !! (n_dim, n_node)  data line of that card
+    logical, allocatable  :: new(:, :)             !! (n_dim, n_node)  prescribed by this step itself
+  end type boundary_state_t
+
+contains
+
+  !> Nothing is prescribed.
+  subroutine open_boundary(state, model)
+    type(boundary_state_t), intent(out) :: state !! empty
+    type(model_t), intent(in) :: model           !! with mesh and points
+    integer :: duplicate, p
+
+    associate (mesh => model%mesh)
+      call build_label_table(state%label, mesh%node_label, duplicate)
+      allocate (state%filled(mesh%n_node), source=.false.)
+      allocate (state%fixed(mesh%n_dim, mesh%n_node), source=.false.)
+      allocate (state%start(mesh%n_dim, mesh%n_node), source=0.0_dp)
+      allocate (state%value(mesh%n_dim, mesh%n_node), source=0.0_dp)
+      allocate (state%amplitude(mesh%n_dim, mesh%n_node), source=0)
+      allocate (state%card(mesh%n_dim, mesh%n_node), source=0)
+      allocate (state%line(mesh%n_dim, mesh%n_node), source=0)
+      allocate (state%new(mesh%n_dim, mesh%n_node), source=.false.)
+      do p = 1, model%points%n
+        state%filled(mesh%node(:, model%points%element(p))) = .true.
+      end do
+    end associate
+  end subroutine open_boundary
+
+  !> *BOUNDARY in the model part: fixed from the start.
+  subroutine fix_boundary(state, model, deck, context, i_card)
+    type(boundary_state_t), intent(inout) :: state  !! more is fixed
+    type(model_t), intent(in) :: model              !! with mesh
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    integer, intent(in) :: i_card                   !! *BOUNDARY
+    integer :: j
+
+    if (has_parameter(deck%card(i_card), "AMPLITUDE")) call fault(context, deck, &
+      & at_parameter(i_card, "AMPLITUDE"), "an amplitude in the model part, where *BOUNDARY fixes: " &
+      & //"expected it inside a step")
+    if (has_parameter(deck%card(i_card), "OP")) call fault(context, deck, &
+      & at_parameter(i_card, "OP"), "OP in the model part, where nothing is carried over: expected " &
+      & //"it inside a step")
+    do j = 1, size(deck%card(i_card)%data)
+      associate (line => deck%card(i_card)%data(j))
+        if (field_count(line) > 3) then
+          if (abs(field_real(line, 4)) > 0.0_dp) call fault(context, deck, at_field(i_card, j, 4), &
+            & "a displacement in the model part, where *BOUNDARY fixes: expected it inside a step")
+        end if
+      end associate
+    end do
+    call add_boundary(state, model, deck, context, i_card)
+  end subroutine fix_boundary
+
+  !> Begins a step: what was prescribed stays where it is, or is released with OP=NEW.
+  subroutine begin_boundary_step(state, deck, context, first, last)
+    type(boundary_state_t), intent(inout) :: state  !! of the step before, or of the model part
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    integer, intent(in) :: first, last              !! cards of the step
+    logical :: replace
+
+    state%new = .false.
+    call check_operation(replace, deck, context, ["BOUNDARY"], [first, last])
+    if (replace) state%fixed = .false.
+  end subroutine begin_boundary_step
+
+  !> Whether the cards of some keywords in a step say OP=NEW; all must say the same.
+  subroutine check_operation(replace, deck, context, keywords, range)
+    logical, intent(out) :: replace                 !! OP=NEW
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    character(*), intent(in) :: keywords(:)         !! canonical
+    integer, intent(in) :: range(2)                 !! (2) first and last card of the step
+    logical :: is_new
+    integer :: i, first
+
+    replace = .false.
+    first = 0
+    do i = range(1), range(2)
+      if (all(deck%card(i)%keyword /= keywords)) cycle
+      is_new = parameter_choice(deck%card(i), "OP", "MOD") == "NEW"
+      if (first == 0) then
+        first = i
+        replace = is_new
+      else if (is_new .neqv. replace) then
+        call fault(context, deck, at_parameter(i, "OP"), "OP differs from that of line " &
+          & //integer_text(deck%card(first)%head%number)//": expected the same OP on every *" &
+          & //deck%card(i)%keyword//" of a step")
+      end if
+    end do
+  end subroutine check_operation
+
+  !> Adds the lines of a *BOUNDARY card.
+  subroutine add_boundary(state, model, deck, context, i_card)
+    type(boundary_state_t), intent(inout) :: state  !! more is prescribed
+    type(model_t), intent(in) :: model              !! with mesh and amplitudes
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    integer, intent(in) :: i_card                   !! *BOUNDARY
+    integer, allocatable :: node(:)
+    integer :: j, first, last, amplitude, direction
+    real(dp) :: value
+
+    call find_amplitude(amplitude, model, deck, context, i_card)
+    do j = 1, size(deck%card(i_card)%data)
+      associate (line => deck%card(i_card)%data(j))
+        call nodes_of_field(node, state, model%mesh, deck, context, at_field(i_card, j, 1))
+        first = field_integer(line, 2)
+        last = first
+        value = 0.0_dp
+        if (field_count(line) > 2) last = field_integer(line, 3)
+        if (field_count(line) > 3) value = field_real(line, 4)
+        call check_directions(first, last, model%mesh%n_dim, deck, context, [i_card, j])
+        do direction = first, min(last, model%mesh%n_dim)
+          call prescribe(state, model%mesh, deck, context, node, direction, &
+                         constraint_t(value=value, amplitude=amplitude, card=i_card, line=j))
+        end do
+      end associate
+    end do
+  end subroutine add_boundary
+
+  !> Directions exist and are in order.
+  subroutine check_directions(first, last, n_dim, deck, context, at)
+    integer, intent(in) :: first, last              !! directions
+    integer, intent(in) :: n_dim                    !! 2 or 3
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    integer, intent(in) :: at(2)                    !! (2) card and data line
+
+    if (first > n_dim) then
+      call fault(context, deck, at_field(at(1), at(2), 2), "direction "//integer_text(first) &
+                 //" in a plane mesh: expected 1 or 2")
+    else if (last > n_dim) then
+      call fault(context, deck, at_field(at(1), at(2), 3), "direction "//integer_text(last) &
+                 //" in a plane mesh: expected 1 or 2")
+    else if (last < first) then
+      call fault(context, deck, at_field(at(1), at(2), 3), "the last direction is " &
+                 //integer_text(last)//": expected at least the first, "//integer_text(first))
+    end if
+  end subroutine check_directions
+
+  !> Prescribes one direction of some nodes. Twice in one step must mean the same.
+  subroutine prescribe(state, mesh, deck, context, node, direction, condition)
+    type(boundary_state_t), intent(inout) :: state  !! more is prescribed
+    type(mesh_t), intent(in) :: mesh                !! labels
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    integer, intent(in) :: node(:)                  !! (n) nodes
+    integer, intent(in) :: direction                !! 1..n_dim
+    type(constraint_t), intent(in) :: condition     !! value, amplitude, card, line
+    integer :: i
+    logical :: reported
+
+    reported = .false.
+    do i = 1, size(node)
+      associate (a => node(i), d => direction)
+        if (state%new(d, a)) then
+          if (abs(state%value(d, a) - condition%value) <= 0.0_dp .and. &
+              state%amplitude(d, a) == condition%amplitude) cycle
+          if (.not. reported) call fault(context, deck, &
+            & at_field(condition%card, condition%line, 1), "node " &
+            & //integer_text(mesh%node_label(a))//" direction "//integer_text(d)//" is " &
+            & //real_text(condition%value)//" here and "//real_text(state%value(d, a)) &
+            & //" in line "//integer_text(line_number(deck, state%card(d, a), state%line(d, a))) &
+            & //": expected one displacement")
+          reported = .true.
+          cycle
+        end if
+        state%new(d, a) = .true.
+        state%fixed(d, a) = .true.
+        state%value(d, a) = condition%value
+        state%amplitude(d, a) = condition%amplitude
+        state%card(d, a) = condition%card
+        state%line(d, a) = condition%line
+      end associate
+    end do
+  end subroutine prescribe
+
+  !> Number of a data line in its file.
+  pure integer function line_number(deck, i_card, i_line)
+    type(deck_t), intent(in) :: deck      !! the deck
+    integer, intent(in) :: i_card, i_line !! card and data line
+
+    line_number = deck%card(i_card)%data(i_line)%number
+  end function line_number
+
+  !> Constraints of the step from what is prescribed, and the totals with which the next one starts.
+  subroutine close_boundary_step(constraint, state, period, amplitude)
+    type(constraint_t), allocatable, intent(out) :: constraint(:) !! one per set, direction and start
+    type(boundary_state_t), intent(inout) :: state                !! ready for the next step
+    real(dp), intent(in) :: period                                !! length of the step
+    type(amplitude_t), intent(in) :: amplitude(:)                 !! amplitudes of the model
+    logical, allocatable :: left(:)
+    integer :: a, d, n_node
+
+    n_node = size(state%filled)
+    allocate (constraint(0))
+    do d = 1, size(state%fixed, 1)
+      left = state%fixed(d, :)
+      do a = 1, n_node
+        if (.not. left(a)) cycle
+        constraint = [constraint, alike(state, left, d, a)]
+        left(constraint(size(constraint))%node) = .false.
+      end do
+      do a = 1, n_node
+        if (.not. state%fixed(d, a)) cycle
+        if (state%amplitude(d, a) > 0) state%value(d, a) = state%value(d, a) &
+          & *amplitude_value(amplitude(state%amplitude(d, a)), period)
+      end do
+    end do
+    state%amplitude = 0
+    state%start = state%value
+  end subroutine close_boundary_step
+
+  !> The constraint of all nodes that are prescribed like one node, by the same line.
+  pure function alike(state, left, d, a) result(constraint)
+    type(boundary_state_t), intent(in) :: state !! what is prescribed
+    logical, intent(in) :: left(:)              !! (n_node) nodes without a constraint so far
+    integer, intent(in) :: d, a                 !! direction and node
+    type(constraint_t) :: constraint            !! of this node and those like it
+    integer :: i
+
+    constraint%direction = d
+    constraint%value = state%value(d, a)
+    constraint%start = state%start(d, a)
+    constraint%amplitude = state%amplitude(d, a)
+    constraint%card = state%card(d, a)
+    constraint%line = state%line(d, a)
+    constraint%node = pack([(i, i=1, size(left))], left .and. state%card(d, :) == constraint%card &
+      & .and. state%line(d, :) == constraint%line &
+      & .and. abs(state%start(d, :) - constraint%start) <= 0.0_dp &
+      & .and. abs(state%value(d, :) - constraint%value) <= 0.0_dp)
+  end function alike
+
+  !> The amplitude that a card names, 0 if it names none.
+  subroutine find_amplitude(found, model, deck, context, i_card)
+    integer, intent(out) :: found                   !! index of the amplitude
+    type(model_t), intent(in) :: model              !! with amplitudes
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! marks the use, takes errors
+    integer, intent(in) :: i_card                   !! card with AMPLITUDE=
+    character(80), allocatable :: names(:)
+    character(:), allocatable :: name
+    integer :: i
+
+    found = 0
+    if (.not. has_parameter(deck%card(i_card), "AMPLITUDE")) return
+    name = parameter_text(deck%card(i_card), "AMPLITUDE", "")
+    allocate (names(size(model%amplitude)))
+    do i = 1, size(names)
+      names(i) = model%amplitude(i)%name
+    end do
+    call use_name(context, is_amplitude, name)
+    do found = 1, size(names)
+      if (same_name(names(found), name)) return
+    end do
+    found = 0
+    call fault(context, deck, at_parameter(i_card, "AMPLITUDE"), "amplitude "//quoted(name) &
+               //" is not defined: expected the NAME of an *AMPLITUDE", name_hint(name, names))
+  end subroutine find_amplitude
+
+  !> The nodes that a field names: a node set or one node. At least one must hold material.
+  subroutine nodes_of_field(node, state, mesh, deck, context, place)
+    integer, allocatable, intent(out) :: node(:)    !! (n) nodes, empty after an error
+    type(boundary_state_t), intent(in) :: state     !! labels, filled nodes
+    type(mesh_t), intent(in) :: mesh                !! with sets
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    type(place_t), intent(in) :: place              !! the field
+    character(:), allocatable :: name
+    integer :: found
+
+    associate (line => deck%card(place%card)%data(place%line))
+      name = field_text(line, place%field)
+      if (field_is_integer(line, place%field)) then
+        found = find_label(state%label, field_integer(line, place%field))
+        if (found > 0) node = [found]
+        if (found == 0) call fault(context, deck, place, "node "//name//" is not defined: expected " &
+          & //"a node of the mesh or the name of a node set")
+      else
+        call require_node_set(context, deck, mesh, place, name, found)
+        if (found > 0) node = mesh%node_set(found)%item
+      end if
+    end associate
+    if (.not. allocated(node)) then
+      allocate (node(0))
+    else if (.not. any(state%filled(node)) .and. any(state%filled)) then
+      call fault(context, deck, place, quoted(name)//" touches no element with material points: " &
+                 //"expected nodes of the body", code=exit_model)
+    end if
+  end subroutine nodes_of_field
+
+end module mpm_boundary_builder

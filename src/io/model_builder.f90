@@ -1,0 +1,160 @@
+!> Builds the model that a deck describes. All faults are collected, each with its place.
+module mpm_model_builder
+  use mpm_build_context, only: at_card, at_parameter, build_context_t, fault, report_unused
+  use mpm_deck_card, only: deck_t, parameter_text
+  use mpm_diagnostics, only: diagnostics_t, to_error
+  use mpm_error, only: error_t, exit_model
+  use mpm_kinds, only: dp
+  use mpm_labelled_mesh, only: labelled_mesh_t
+  use mpm_material_builder, only: build_amplitudes, build_materials
+  use mpm_mesh_builder, only: build_linear_mesh, build_parents
+  use mpm_method_builder, only: build_method, build_points
+  use mpm_model, only: model_t, step_t
+  use mpm_set_builder, only: build_sets
+  use mpm_step_builder, only: build_steps
+  use mpm_support_check, only: find_free_modes
+  use mpm_text, only: integer_text
+  implicit none
+  private
+  public :: build_model
+
+contains
+
+  !> Builds the model. The error holds all messages; its code is exit_deck if one of them is about
+  !! the deck, else exit_model (exit_file for a mesh file that cannot be read).
+  subroutine build_model(model, deck, lax, diag, error)
+    type(model_t), intent(out) :: model              !! complete when there is no error
+    type(deck_t), intent(in) :: deck                 !! checked against the schema
+    logical, intent(in) :: lax                       !! names that nothing uses are only warnings
+    type(diagnostics_t), intent(inout) :: diag       !! gets all messages
+    type(error_t), allocatable, intent(out) :: error !! deck or model errors
+    type(build_context_t) :: context
+    type(labelled_mesh_t) :: mesh
+
+    context%lax = lax
+    context%diag = diag
+    call build_texts(model, deck)
+    call build_materials(model%material, deck, context)
+    call build_amplitudes(model%amplitude, deck, context)
+    call build_meshes(model, mesh, deck, context)
+    if (model%mesh%n_el > 0) then
+      call build_method(model, deck, context, mesh%parent%order)
+      call build_points(model, deck, context)
+      call build_steps(model, deck, context)
+      call report_unused(context, deck)
+      if (context%diag%n_errors == 0) call check_supports(model, deck, context)
+      if (context%diag%n_errors == 0) call check_driver(model, deck, context)
+    end if
+    diag = context%diag
+    call to_error(diag, context%code, error)
+  end subroutine build_model
+
+  !> Job, heading and units.
+  subroutine build_texts(model, deck)
+    type(model_t), intent(inout) :: model !! texts are set
+    type(deck_t), intent(in) :: deck      !! the deck
+    integer :: i, j
+
+    model%job = deck%name
+    model%heading = ""
+    model%unit_length = ""
+    model%unit_force = ""
+    do i = 1, size(deck%card)
+      select case (deck%card(i)%keyword)
+      case ("HEADING")
+        do j = 1, size(deck%card(i)%data)
+          if (j > 1) model%heading = model%heading//new_line("a")
+          model%heading = model%heading//trim(adjustl(deck%card(i)%data(j)%text))
+        end do
+      case ("UNITS")
+        model%unit_length = parameter_text(deck%card(i), "LENGTH", "")
+        model%unit_force = parameter_text(deck%card(i), "FORCE", "")
+      end select
+    end do
+  end subroutine build_texts
+
+  !> The mesh of the user with the sets of the deck, and the linear mesh; none after an error.
+  subroutine build_meshes(model, mesh, deck, context)
+    type(model_t), intent(inout) :: model           !! mesh is set, with elements when all is well
+    type(labelled_mesh_t), intent(out) :: mesh      !! mesh of the user
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    integer :: source, n_before
+
+    n_before = context%diag%n_errors
+    call build_parents(mesh, source, deck, context)
+    if (source == 0 .or. context%diag%n_errors > n_before) return
+    call build_sets(mesh, deck, context)
+    call build_linear_mesh(model%mesh, mesh, deck, context, source)
+  end subroutine build_meshes
+
+  !> Every body must be held in every step.
+  subroutine check_supports(model, deck, context)
+    type(model_t), intent(in) :: model              !! complete
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    character(:), allocatable :: modes
+    integer :: i, element
+
+    do i = 1, size(model%step)
+      call find_free_modes(modes, element, model%mesh, model%points, model%step(i)%constraint)
+      if (element == 0) cycle
+      call fault(context, deck, at_card(model%step(i)%card), "the body of element " &
+                 //integer_text(model%mesh%parent_label(model%mesh%parent(element))) &
+                 //" is free to move in this step ("//modes//"): expected *BOUNDARY conditions " &
+                 //"that hold it", code=exit_model)
+    end do
+  end subroutine check_supports
+
+  !> The mesh follows the prescribed displacement of the driver: its nodes need one, the same for all.
+  subroutine check_driver(model, deck, context)
+    type(model_t), intent(in) :: model              !! complete
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    integer :: i, j, d, card
+
+    if (.not. model%motion%active) return
+    card = 0
+    do i = 1, size(deck%card)
+      if (deck%card(i)%keyword == "MOVING MESH") card = i
+    end do
+    do i = 1, size(model%step)
+      do d = 1, model%mesh%n_dim
+        if (abs(model%motion%direction(d)) <= 1.0e-12_dp) cycle
+        do j = 1, size(model%motion%driver)
+          if (is_driven(model%step(i), model%motion%driver(j), model%motion%driver(1), d)) cycle
+          call fault(context, deck, at_parameter(card, "DRIVER"), "node " &
+            & //integer_text(model%mesh%node_label(model%motion%driver(j)))//" of the driver has " &
+            & //"no displacement in direction "//integer_text(d)//", or another one than the " &
+            & //"rest, in step "//model%step(i)%name//": expected one *BOUNDARY value for the set", &
+            & code=exit_model)
+          return
+        end do
+      end do
+    end do
+  end subroutine check_driver
+
+  !> Whether a node moves like the first node of the driver.
+  pure logical function is_driven(step, node, first, direction)
+    type(step_t), intent(in) :: step !! with constraints
+    integer, intent(in) :: node      !! node of the driver
+    integer, intent(in) :: first     !! first node of the driver
+    integer, intent(in) :: direction !! 1..n_dim
+    integer :: i, i_node, i_first
+
+    i_node = 0
+    i_first = 0
+    do i = 1, size(step%constraint)
+      if (step%constraint(i)%direction /= direction) cycle
+      if (any(step%constraint(i)%node == node)) i_node = i
+      if (any(step%constraint(i)%node == first)) i_first = i
+    end do
+    is_driven = i_node > 0 .and. i_first > 0
+    if (.not. is_driven .or. i_node == i_first) return
+    associate (a => step%constraint(i_node), b => step%constraint(i_first))
+      is_driven = abs(a%value - b%value) <= 0.0_dp .and. abs(a%start - b%start) <= 0.0_dp &
+                  .and. a%amplitude == b%amplitude
+    end associate
+  end function is_driven
+
+end module mpm_model_builder

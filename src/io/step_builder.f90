@@ -1,0 +1,195 @@
+!> Builds the steps: schedule, controls, and everything in force in each of them.
+module mpm_step_builder
+  use mpm_boundary_builder, only: add_boundary, begin_boundary_step, boundary_state_t, &
+    & close_boundary_step, fix_boundary, open_boundary
+  use mpm_build_context, only: at_card, at_field, build_context_t, fault
+  use mpm_deck_card, only: deck_t, field_count, field_real, has_parameter, parameter_integer, &
+    & parameter_real, parameter_text
+  use mpm_expectation_builder, only: build_expectation
+  use mpm_kinds, only: dp
+  use mpm_load_builder, only: add_loads, begin_load_step, close_load_step, load_state_t
+  use mpm_model, only: history_request_t, model_t, step_t
+  use mpm_output_builder, only: build_field_output, build_history
+  use mpm_text, only: integer_text, real_text
+  implicit none
+  private
+  public :: build_steps
+
+  real(dp), parameter :: smallest_part = 1.0e-5_dp !! default minimum of an increment over the period
+
+contains
+
+  !> Builds all steps.
+  subroutine build_steps(model, deck, context)
+    type(model_t), intent(inout) :: model           !! with mesh, points, amplitudes; steps are set
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    type(boundary_state_t) :: boundary
+    type(load_state_t) :: loads
+    real(dp) :: time
+    integer :: i, first, n
+
+    n = 0
+    do i = 1, size(deck%card)
+      if (deck%card(i)%keyword == "STEP") n = n + 1
+    end do
+    allocate (model%step(n))
+    if (n == 0) then
+      call fault(context, deck, at_card(size(deck%card)), "the deck has no step: expected *STEP " &
+                 //"to *END STEP")
+      return
+    end if
+    call open_boundary(boundary, model)
+    n = 0
+    first = 0
+    time = 0.0_dp
+    do i = 1, size(deck%card)
+      select case (deck%card(i)%keyword)
+      case ("STEP")
+        first = i
+      case ("END STEP")
+        n = n + 1
+        call build_step(model, n, boundary, loads, deck, context, [first, i], time)
+        first = 0
+      case ("BOUNDARY")
+        if (first == 0) call fix_boundary(boundary, model, deck, context, i)
+      end select
+    end do
+  end subroutine build_steps
+
+  !> Builds one step.
+  subroutine build_step(model, n, boundary, loads, deck, context, range, time)
+    type(model_t), intent(inout) :: model             !! step n is set
+    integer, intent(in) :: n                          !! number of the step
+    type(boundary_state_t), intent(inout) :: boundary !! what is prescribed
+    type(load_state_t), intent(inout) :: loads        !! loads in force
+    type(deck_t), intent(in) :: deck                  !! the deck
+    type(build_context_t), intent(inout) :: context   !! takes errors
+    integer, intent(in) :: range(2)                   !! (2) cards *STEP and *END STEP
+    real(dp), intent(inout) :: time                   !! total time at the start, then at the end
+    type(step_t) :: step
+    integer :: i
+
+    call open_step(step, model, n, deck, range(1))
+    call begin_boundary_step(boundary, deck, context, range(1), range(2))
+    call begin_load_step(loads, deck, context, range(1), range(2))
+    do i = range(1), range(2)
+      select case (deck%card(i)%keyword)
+      case ("STATIC")
+        call build_schedule(step, deck, context, i)
+      case ("CONTROLS")
+        call build_controls(step, deck, i)
+      case ("BOUNDARY")
+        call add_boundary(boundary, model, deck, context, i)
+      case ("CLOAD", "DLOAD", "DSLOAD")
+        call add_loads(loads, boundary, model, deck, context, i)
+      end select
+    end do
+    call close_boundary_step(step%constraint, boundary, step%schedule%period, model%amplitude)
+    call close_load_step(step%load, loads, step%schedule%period, model%amplitude)
+    call build_requests(step, model, deck, context, range, time)
+    time = time + step%schedule%period
+    model%step(n) = step
+  end subroutine build_step
+
+  !> Name, number of increments, and the requests that carry over.
+  subroutine open_step(step, model, n, deck, i_card)
+    type(step_t), intent(out) :: step  !! without conditions
+    type(model_t), intent(in) :: model !! with the steps before
+    integer, intent(in) :: n           !! number of the step
+    type(deck_t), intent(in) :: deck   !! the deck
+    integer, intent(in) :: i_card      !! *STEP
+
+    step%card = i_card
+    step%name = parameter_text(deck%card(i_card), "NAME", "STEP-"//integer_text(n))
+    step%schedule%max_increments = parameter_integer(deck%card(i_card), "INC", &
+                                                     step%schedule%max_increments)
+    allocate (step%history(0), step%expectation(0))
+    if (n == 1) return
+    step%has_field_output = model%step(n - 1)%has_field_output
+    step%field_output = model%step(n - 1)%field_output
+    step%history = model%step(n - 1)%history
+    step%newton = model%step(n - 1)%newton
+  end subroutine open_step
+
+  !> *STATIC.
+  subroutine build_schedule(step, deck, context, i_card)
+    type(step_t), intent(inout) :: step             !! schedule is set
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    integer, intent(in) :: i_card                   !! *STATIC
+    real(dp) :: needed
+
+    associate (line => deck%card(i_card)%data(1), schedule => step%schedule)
+      schedule%direct = has_parameter(deck%card(i_card), "DIRECT")
+      schedule%initial = field_real(line, 1)
+      schedule%period = field_real(line, 2)
+      schedule%minimum = min(schedule%initial, smallest_part*schedule%period)
+      schedule%maximum = schedule%period
+      if (schedule%direct) schedule%maximum = schedule%initial
+      if (field_count(line) > 2) schedule%minimum = field_real(line, 3)
+      if (field_count(line) > 3) schedule%maximum = field_real(line, 4)
+      if (schedule%initial > schedule%period) then
+        call fault(context, deck, at_field(i_card, 1, 1), "the first increment " &
+                   //real_text(schedule%initial)//" is longer than the step: expected at most " &
+                   //real_text(schedule%period))
+      else if (schedule%minimum > schedule%initial) then
+        call fault(context, deck, at_field(i_card, 1, 3), "the smallest increment " &
+                   //real_text(schedule%minimum)//" is larger than the first: expected at most " &
+                   //real_text(schedule%initial))
+      else if (schedule%direct .and. field_count(line) > 3) then
+        call fault(context, deck, at_field(i_card, 1, 4), "a largest increment with DIRECT, where " &
+                   //"all are equal: expected no fourth value")
+      else if (schedule%maximum < schedule%initial) then
+        call fault(context, deck, at_field(i_card, 1, 4), "the largest increment " &
+                   //real_text(schedule%maximum)//" is smaller than the first: expected at least " &
+                   //real_text(schedule%initial))
+      end if
+      needed = schedule%period/schedule%initial
+      if (schedule%direct .and. needed > real(schedule%max_increments, dp) + 0.5_dp) &
+        call fault(context, deck, at_field(i_card, 1, 1), "the step needs "//real_text(needed) &
+                   //" increments, INC allows "//integer_text(schedule%max_increments) &
+                   //": expected a larger INC on *STEP")
+    end associate
+  end subroutine build_schedule
+
+  !> *CONTROLS.
+  subroutine build_controls(step, deck, i_card)
+    type(step_t), intent(inout) :: step !! controls are set
+    type(deck_t), intent(in) :: deck    !! the deck
+    integer, intent(in) :: i_card       !! *CONTROLS
+
+    associate (card => deck%card(i_card), newton => step%newton)
+      newton%tolerance = parameter_real(card, "TOLERANCE", newton%tolerance)
+      newton%max_iterations = parameter_integer(card, "MAX ITERATIONS", newton%max_iterations)
+      newton%max_backtracks = parameter_integer(card, "MAX BACKTRACKS", newton%max_backtracks)
+    end associate
+  end subroutine build_controls
+
+  !> *OUTPUT, *HISTORY and *EXPECT of a step.
+  subroutine build_requests(step, model, deck, context, range, time)
+    type(step_t), intent(inout) :: step             !! requests are added
+    type(model_t), intent(in) :: model              !! with mesh and points
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    integer, intent(in) :: range(2)                 !! (2) cards *STEP and *END STEP
+    real(dp), intent(in) :: time                    !! total time at the start of the step
+    type(history_request_t) :: request
+    integer :: i
+
+    do i = range(1), range(2)
+      select case (deck%card(i)%keyword)
+      case ("OUTPUT")
+        step%has_field_output = .true.
+        call build_field_output(step%field_output, deck, context, i)
+      case ("HISTORY")
+        call build_history(request, model, deck, context, i)
+        step%history = [step%history, request]
+      case ("EXPECT")
+        call build_expectation(step%expectation, model, deck, context, i, &
+                               [time, time + step%schedule%period])
+      end select
+    end do
+  end subroutine build_requests
+
+end module mpm_step_builder

@@ -1,0 +1,198 @@
+!> Whether the constraints of a step hold every body: no rigid-body mode may be left free.
+module mpm_support_check
+  use mpm_dof_map, only: constraint_t
+  use mpm_kinds, only: dp
+  use mpm_material_points, only: points_t
+  use mpm_mesh, only: mesh_t
+  implicit none
+  private
+  public :: find_free_modes
+
+  real(dp), parameter :: rank_tolerance = 1.0e-11_dp !! pivot over the largest one
+
+contains
+
+  !> Finds the first body that the constraints do not hold: elements with points that hang together
+  !! by nodes. Its free modes are named in words.
+  pure subroutine find_free_modes(modes, element, mesh, points, constraint)
+    character(:), allocatable, intent(out) :: modes  !! such as "translation in y", empty if all is held
+    integer, intent(out) :: element                  !! an element of that body, 0 if all is held
+    type(mesh_t), intent(in) :: mesh                 !! initial mesh
+    type(points_t), intent(in) :: points             !! initial points
+    type(constraint_t), intent(in) :: constraint(:)  !! in force in the step
+    integer, allocatable :: body(:)
+    logical, allocatable :: fixed(:, :), seen(:)
+    integer :: i, e
+
+    modes = ""
+    element = 0
+    allocate (seen(mesh%n_node), source=.false.)
+    allocate (fixed(mesh%n_dim, mesh%n_node), source=.false.)
+    do i = 1, size(constraint)
+      fixed(constraint(i)%direction, constraint(i)%node) = .true.
+    end do
+    call label_bodies(body, mesh, points)
+    do e = 1, mesh%n_el
+      if (points%first(e + 1) == points%first(e)) cycle
+      if (seen(body(mesh%node(1, e)))) cycle
+      seen(body(mesh%node(1, e))) = .true.
+      modes = free_modes(mesh, fixed, body == body(mesh%node(1, e)))
+      if (len(modes) == 0) cycle
+      element = e
+      return
+    end do
+  end subroutine find_free_modes
+
+  !> The body of each node, called by its lowest node; 0 for nodes without material.
+  pure subroutine label_bodies(body, mesh, points)
+    integer, allocatable, intent(out) :: body(:) !! (n_node)
+    type(mesh_t), intent(in) :: mesh             !! initial mesh
+    type(points_t), intent(in) :: points         !! initial points
+    integer :: a, e, i
+
+    allocate (body(mesh%n_node), source=0)
+    do e = 1, mesh%n_el
+      if (points%first(e + 1) == points%first(e)) cycle
+      do i = 1, mesh%n_dim + 1
+        a = mesh%node(i, e)
+        if (body(a) == 0) body(a) = a
+      end do
+      do i = 2, mesh%n_dim + 1
+        call join(body, mesh%node(1, e), mesh%node(i, e))
+      end do
+    end do
+    do a = 1, mesh%n_node
+      if (body(a) > 0) body(a) = root(body, a)
+    end do
+  end subroutine label_bodies
+
+  !> Joins the bodies of two nodes; the lower root wins.
+  pure subroutine join(body, a, b)
+    integer, intent(inout) :: body(:) !! (n_node) parents of a forest
+    integer, intent(in) :: a, b       !! nodes
+    integer :: root_a, root_b, next, i
+
+    root_a = root(body, a)
+    root_b = root(body, b)
+    body(max(root_a, root_b)) = min(root_a, root_b)
+    i = b
+    do while (body(i) /= i)
+      next = body(i)
+      body(i) = min(root_a, root_b)
+      i = next
+    end do
+  end subroutine join
+
+  !> Root of a node in the forest.
+  pure integer function root(body, a)
+    integer, intent(in) :: body(:) !! (n_node) parents
+    integer, intent(in) :: a       !! node
+
+    root = a
+    do while (body(root) /= root)
+      root = body(root)
+    end do
+  end function root
+
+  !> Names of the rigid-body modes of a body that no constraint resists.
+  pure function free_modes(mesh, fixed, member) result(modes)
+    type(mesh_t), intent(in) :: mesh   !! initial mesh
+    logical, intent(in) :: fixed(:, :) !! (n_dim, n_node) prescribed
+    logical, intent(in) :: member(:)   !! (n_node) belongs to the body
+    character(:), allocatable :: modes !! separated by commas, empty if none is free
+    character(16), parameter :: name(6) = ["translation in x", "translation in y", &
+      "translation in z", "rotation about x", "rotation about y", "rotation about z"]
+    real(dp) :: gram(6, 6)
+    integer :: i, n_rank
+
+    modes = ""
+    gram = held_modes(mesh, fixed, member)
+    if (mesh%n_dim == 2) then
+      do i = 3, 5
+        gram(i, i) = 1.0_dp
+      end do
+    end if
+    n_rank = rank_of(gram)
+    do i = 6, 1, -1
+      if (n_rank == 6) exit
+      gram(i, i) = gram(i, i) + 1.0_dp
+      if (rank_of(gram) > n_rank) then
+        n_rank = n_rank + 1
+        if (len(modes) > 0) modes = ", "//modes
+        modes = name(i)//modes
+      else
+        gram(i, i) = gram(i, i) - 1.0_dp
+      end if
+    end do
+  end function free_modes
+
+  !> Sum over the prescribed degrees of freedom of r r^T, with r the displacement of that degree of
+  !! freedom in the six rigid modes (rotations about the middle of the body, scaled by its size).
+  pure function held_modes(mesh, fixed, member) result(gram)
+    type(mesh_t), intent(in) :: mesh   !! initial mesh
+    logical, intent(in) :: fixed(:, :) !! (n_dim, n_node) prescribed
+    logical, intent(in) :: member(:)   !! (n_node) belongs to the body
+    real(dp) :: gram(6, 6)             !! (6, 6) translations, then rotations; largest entry 1
+    real(dp) :: low(3), high(3), x(3), r(6), extent
+    integer :: a, i
+
+    low = 0.0_dp
+    high = 0.0_dp
+    do i = 1, mesh%n_dim
+      low(i) = minval(mesh%x(i, :), mask=member)
+      high(i) = maxval(mesh%x(i, :), mask=member)
+    end do
+    extent = maxval(high - low)
+    gram = 0.0_dp
+    do a = 1, mesh%n_node
+      if (.not. member(a)) cycle
+      x = 0.0_dp
+      x(:mesh%n_dim) = mesh%x(:, a)
+      x = (x - 0.5_dp*(low + high))/extent
+      do i = 1, mesh%n_dim
+        if (.not. fixed(i, a)) cycle
+        r = 0.0_dp
+        r(i) = 1.0_dp
+        r(4:6) = rotation_row(x, i)
+        gram = gram + spread(r, 2, 6)*spread(r, 1, 6)
+      end do
+    end do
+    if (maxval(abs(gram)) > 0.0_dp) gram = gram/maxval(abs(gram))
+  end function held_modes
+
+  !> Displacement in direction i at x for unit rotations about x, y and z.
+  pure function rotation_row(x, i) result(row)
+    real(dp), intent(in) :: x(3) !! (3) position
+    integer, intent(in) :: i     !! direction
+    real(dp) :: row(3)           !! (3)
+
+    select case (i)
+    case (1)
+      row = [0.0_dp, x(3), -x(2)]
+    case (2)
+      row = [-x(3), 0.0_dp, x(1)]
+    case default
+      row = [x(2), -x(1), 0.0_dp]
+    end select
+  end function rotation_row
+
+  !> Rank of a positive semidefinite matrix by elimination with the largest diagonal as pivot.
+  pure integer function rank_of(matrix) result(n_rank)
+    real(dp), intent(in) :: matrix(6, 6) !! (6, 6)
+    real(dp) :: a(6, 6), largest
+    integer :: k
+
+    a = matrix
+    largest = maxval([(a(k, k), k=1, 6)])
+    n_rank = 0
+    do
+      k = maxloc([(a(k, k), k=1, 6)], dim=1)
+      if (a(k, k) <= rank_tolerance*largest .or. n_rank == 6) exit
+      n_rank = n_rank + 1
+      a = a - spread(a(:, k), 2, 6)*spread(a(k, :), 1, 6)/a(k, k)
+      a(:, k) = 0.0_dp
+      a(k, :) = 0.0_dp
+    end do
+  end function rank_of
+
+end module mpm_support_check
