@@ -24,16 +24,16 @@ module mpm_element_bins
 contains
 
   !> Whether bins belong to the mesh as it is now.
-  pure logical function is_current(bins, mesh, reach)
+  pure logical function is_current(bins, mesh, reach) result(current)
     type(element_bins_t), intent(in) :: bins  !! bins
     type(mesh_t), intent(in)         :: mesh  !! mesh
     real(dp), intent(in)             :: reach !! widening over element size [-]
 
-    is_current = .false.
+    current = .false.
     if (.not. allocated(bins%x)) return
     if (any(shape(bins%x) /= shape(mesh%x)) .or. size(bins%box, 3) /= mesh%n_el) return
     if (abs(bins%reach - reach) > 0.0_dp) return
-    is_current = all(abs(bins%x - mesh%x) <= 0.0_dp)
+    current = all(abs(bins%x - mesh%x) <= 0.0_dp)
   end function is_current
 
   !> Sorts the elements into about as many bins as there are elements.

@@ -22,7 +22,7 @@ module mpm_material_points
   !! Voigt order 11, 22, 33, 12, 23, 13, tensor components (never engineering shear).
   type :: point_state_t
     real(dp), allocatable :: strain_e(:, :)    !! (6, n)  elastic logarithmic strain [-]
-    real(dp), allocatable :: left_cauchy_green_e_m1(:, :) !! (6, n)  b_e - 1 = exp(2 strain_e) - 1 [-]
+    real(dp), allocatable :: left_cauchy_green_e_m1(:, :) !! (6, n)  b_e - 1 [-]
     real(dp), allocatable :: hardening(:, :)   !! (n_hardening, n)  accumulated plastic strain [-]
     real(dp), allocatable :: cauchy(:, :)      !! (6, n)  Cauchy stress [force/length^2]
     real(dp), allocatable :: jacobian_bar(:)   !! (n)     product of all det dFbar [-]
@@ -42,7 +42,7 @@ module mpm_material_points
     real(dp), allocatable :: volume(:)      !! (n)           volume, converged
     real(dp), allocatable :: mass(:)        !! (n)           density times reference volume
     real(dp), allocatable :: def_grad(:, :, :) !! (3, 3, n)  F, converged
-    integer, allocatable  :: first(:)       !! (n_el+1)      points of element e are order(first(e):first(e+1)-1)
+    integer, allocatable  :: first(:)       !! (n_el+1)      start of each element in order
     integer, allocatable  :: order(:)       !! (n with a host)
     type(point_state_t)   :: state          !! converged state
   end type points_t

@@ -31,15 +31,15 @@ module mpm_mesh
     integer :: n_dim = 0  !! 2 plane strain, 3 solid
     integer :: n_node = 0 !! nodes
     integer :: n_el = 0   !! linear elements (after the split of quadratic parents)
-    real(dp), allocatable :: x(:, :)              !! (n_dim, n_node)           coordinates [length]
-    integer, allocatable  :: node(:, :)           !! (n_dim+1, n_el)           nodes of an element
-    integer, allocatable  :: neighbour(:, :)      !! (n_dim+1, n_el)           element behind the face opposite a node, 0 outside
-    real(dp), allocatable :: grad_shape(:, :, :)  !! (n_dim, n_dim+1, n_el)    gradients [1/length]
-    real(dp), allocatable :: volume(:)            !! (n_el)                    volume (2-D: area) [length^n_dim]
-    integer, allocatable  :: parent(:)            !! (n_el)                    index of the user's element
-    integer, allocatable  :: node_label(:)        !! (n_node)                  number of a node in the input
-    integer, allocatable  :: parent_label(:)      !! (n_parent)                number of an element in the input
-    integer, allocatable  :: parent_child_1(:)    !! (n_parent+1)              first linear element of each parent
+    real(dp), allocatable :: x(:, :)              !! (n_dim, n_node)  coordinates [length]
+    integer, allocatable  :: node(:, :)           !! (n_dim+1, n_el)  nodes of an element
+    integer, allocatable  :: neighbour(:, :) !! (n_dim+1, n_el)  element behind a face, 0 outside
+    real(dp), allocatable :: grad_shape(:, :, :)  !! (n_dim, n_dim+1, n_el)  gradients [1/length]
+    real(dp), allocatable :: volume(:)            !! (n_el)  volume (2-D: area) [length^n_dim]
+    integer, allocatable  :: parent(:)            !! (n_el)  index of the user's element
+    integer, allocatable  :: node_label(:)        !! (n_node)  number of a node in the input
+    integer, allocatable  :: parent_label(:)      !! (n_parent)  number of an element in the input
+    integer, allocatable  :: parent_child_1(:)    !! (n_parent+1)  first linear element of each
     type(index_set_t), allocatable :: node_set(:)
     type(index_set_t), allocatable :: element_set(:) !! of linear elements
     type(face_set_t), allocatable  :: surface(:)     !! of linear faces

@@ -68,6 +68,8 @@ contains
 
     call check_box(box, error)
     if (allocated(error)) return
+    call check_all_planes(box, error)
+    if (allocated(error)) return
     parent%n_dim = box%n_dim
     parent%order = 1
     call place_nodes(parent, box)
@@ -84,7 +86,7 @@ contains
     call collect_sides(parent)
   end subroutine generate_box
 
-  !> The settings make sense together.
+  !> The numbers make sense together.
   pure subroutine check_box(box, error)
     type(box_settings_t), intent(in) :: box          !! settings
     type(error_t), allocatable, intent(out) :: error !! the first fault
@@ -102,13 +104,19 @@ contains
       call make_error(error, exit_model, "box of orientation "//integer_text(box%orientation)// &
         ": expected 1 or 2")
     end if
-    if (allocated(error)) return
+  end subroutine check_box
+
+  !> The planes of every direction ascend.
+  pure subroutine check_all_planes(box, error)
+    type(box_settings_t), intent(in) :: box          !! settings
+    type(error_t), allocatable, intent(out) :: error !! the first fault
+
     call check_planes(box%x, "x", error)
     if (allocated(error)) return
     call check_planes(box%y, "y", error)
     if (allocated(error) .or. box%n_dim == 2) return
     call check_planes(box%z, "z", error)
-  end subroutine check_box
+  end subroutine check_all_planes
 
   !> The planes of a direction ascend.
   pure subroutine check_planes(plane, direction, error)

@@ -1,4 +1,5 @@
 !> Interfaces to METIS 5 with 32-bit indices and reals, no logic.
+! allow(assumed-size)
 module mpm_metis_binding
   use, intrinsic :: iso_c_binding, only: c_float, c_int, c_int32_t, c_ptr
   implicit none
@@ -16,6 +17,7 @@ module mpm_metis_binding
     function metis_set_default_options(options) bind(c, name="METIS_SetDefaultOptions") &
         result(status)
       import :: c_int, c_int32_t
+      implicit none
       integer(c_int32_t), intent(out) :: options(*) !! (metis_n_options)
       integer(c_int) :: status                      !! metis_ok or an error
     end function metis_set_default_options
@@ -25,6 +27,7 @@ module mpm_metis_binding
         vertex_size, edge_weight, n_part, part_weight, imbalance, options, cut, part) &
         bind(c, name="METIS_PartGraphRecursive") result(status)
       import :: c_float, c_int, c_int32_t, c_ptr
+      implicit none
       integer(c_int32_t), intent(in)  :: n_vertex     !! vertices
       integer(c_int32_t), intent(in)  :: n_constraint !! balancing constraints
       integer(c_int32_t), intent(in)  :: first(*)     !! (n_vertex+1)  start of each adjacency list

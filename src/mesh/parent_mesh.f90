@@ -21,7 +21,7 @@ module mpm_parent_mesh
     integer, allocatable  :: node(:, :)      !! (n_en, n_el)      n_en = 3, 6, 4 or 10
     integer, allocatable  :: node_label(:)   !! (n_node)          number in the input
     integer, allocatable  :: element_label(:) !! (n_el)           number in the input
-    integer, allocatable  :: carrier(:, :)   !! (n_dim, n_carrier) corner nodes of surface carriers (edges or triangles)
+    integer, allocatable  :: carrier(:, :)   !! (n_dim, n_carrier) corners of surface carriers
     type(index_set_t), allocatable :: node_set(:)    !! of nodes
     type(index_set_t), allocatable :: element_set(:) !! of parents
     type(index_set_t), allocatable :: carrier_set(:) !! of carriers

@@ -195,13 +195,13 @@ contains
   end function face_parts
 
   !> Whether two lists of different nodes hold the same ones.
-  pure logical function same_nodes(a, b)
+  pure logical function same_nodes(a, b) result(same)
     integer, intent(in) :: a(:) !! (m)  nodes
     integer, intent(in) :: b(:) !! (m)  nodes
 
     integer :: i
 
-    same_nodes = all([(any(a == b(i)), i=1, size(b))])
+    same = all([(any(a == b(i)), i=1, size(b))])
   end function same_nodes
 
 end module mpm_parent_sets

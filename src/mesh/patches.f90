@@ -15,7 +15,7 @@ module mpm_patches
   type :: patches_t
     integer :: n = 0                      !! patches
     integer, allocatable :: of_element(:) !! (n_el)  patch of an element
-    integer, allocatable :: first(:)      !! (n+1)   elements of patch P are element(first(P):first(P+1)-1)
+    integer, allocatable :: first(:)      !! (n+1)   start of each patch in element
     integer, allocatable :: element(:)    !! (n_el)
   end type patches_t
 

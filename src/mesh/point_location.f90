@@ -22,7 +22,7 @@ module mpm_point_location
   !> What to do with points outside the mesh.
   type :: location_settings_t
     integer  :: lost_action = lost_is_error !! lost_is_*
-    real(dp) :: tolerance = 0.1_dp !! distance outside the mesh over element size up to which the shape functions extrapolate
+    real(dp) :: tolerance = 0.1_dp !! farthest extrapolation, over element size [-]
   end type location_settings_t
 
   !> What a location of all points did.
@@ -110,13 +110,10 @@ contains
     end do
     !$omp end parallel do
     report%n_bin_tests = n_bin_tests
+    report%n_extrapolated = count(points%status(stray) == status_extrapolated .and. host(stray) > 0)
+    stray = pack(stray, host(stray) == 0)
     do i = 1, size(stray)
-      p = stray(i)
-      if (host(p) == 0) then
-        call lose(points, p, settings, report)
-      else if (points%status(p) == status_extrapolated) then
-        report%n_extrapolated = report%n_extrapolated + 1
-      end if
+      call lose(points, stray(i), settings, report)
     end do
   end subroutine search_all
 

@@ -25,26 +25,47 @@ contains
     real(dp), allocatable, intent(out) :: weight(:)         !! (n)  fractions, sum 1 [-]
     logical, intent(out)               :: found             !!      whether there is such a rule
 
-    found = .true.
-    if (n_dim == 3 .and. n_points == 4) then
-      barycentric = vertex_orbit(3, 1.0_dp/sqrt(5.0_dp))
-    else if (n_dim == 3 .and. n_points == 11) then
-      barycentric = rule_11()
-    else if (n_dim == 2 .and. n_points == 3) then
-      barycentric = vertex_orbit(2, 0.5_dp)
-    else if (n_dim == 2 .and. n_points == 6) then
-      barycentric = reshape([vertex_orbit(2, orbit_6(1)), vertex_orbit(2, orbit_6(2))], [3, 6])
-    else if (n_dim == 2 .and. n_points == 12) then
-      barycentric = rule_12()
+    if (n_dim == 2) then
+      call triangle_rule(n_points, barycentric)
     else
-      found = n_points >= 1 .and. divisions(n_dim, n_points) <= finest_lattice
-      if (found) found = divisions(n_dim, n_points)**n_dim == n_points
-      if (found) barycentric = lattice(n_dim, divisions(n_dim, n_points))
-      if (.not. found) allocate (barycentric(n_dim + 1, 0))
+      call tetrahedron_rule(n_points, barycentric)
     end if
+    found = size(barycentric, 2) > 0
     allocate (weight(size(barycentric, 2)))
     weight = 1.0_dp/real(max(1, size(weight)), dp)
   end subroutine point_rule
+
+  !> Points in a triangle.
+  pure subroutine triangle_rule(n_points, barycentric)
+    integer, intent(in)                :: n_points          !! points wanted
+    real(dp), allocatable, intent(out) :: barycentric(:, :) !! (3, n)  none if there is no rule [-]
+
+    select case (n_points)
+    case (3)
+      barycentric = vertex_orbit(2, 0.5_dp)
+    case (6)
+      barycentric = reshape([vertex_orbit(2, orbit_6(1)), vertex_orbit(2, orbit_6(2))], [3, 6])
+    case (12)
+      barycentric = rule_12()
+    case default
+      barycentric = lattice(2, divisions(2, n_points))
+    end select
+  end subroutine triangle_rule
+
+  !> Points in a tetrahedron.
+  pure subroutine tetrahedron_rule(n_points, barycentric)
+    integer, intent(in)                :: n_points          !! points wanted
+    real(dp), allocatable, intent(out) :: barycentric(:, :) !! (4, n)  none if there is no rule [-]
+
+    select case (n_points)
+    case (4)
+      barycentric = vertex_orbit(3, 1.0_dp/sqrt(5.0_dp))
+    case (11)
+      barycentric = rule_11()
+    case default
+      barycentric = lattice(3, divisions(3, n_points))
+    end select
+  end subroutine tetrahedron_rule
 
   !> The numbers of points there are rules for, in words.
   pure function available_rules(n_dim) result(text)
@@ -58,12 +79,15 @@ contains
     end if
   end function available_rules
 
-  !> Divisions of an edge in the lattice of about so many sub-simplices.
+  !> Divisions of an edge in the lattice of so many sub-simplices, 0 if there is no such lattice.
   pure integer function divisions(n_dim, n_points) result(k)
     integer, intent(in) :: n_dim    !! 2 or 3
-    integer, intent(in) :: n_points !! points, at least 1
+    integer, intent(in) :: n_points !! points wanted
 
-    k = nint(real(max(n_points, 0), dp)**(1.0_dp/real(n_dim, dp)))
+    do k = finest_lattice, 1, -1
+      if (k**n_dim == n_points) return
+    end do
+    k = 0
   end function divisions
 
   !> One point on the way from the centroid to each vertex.
@@ -127,7 +151,7 @@ contains
   !! sub-simplex is a cell corner plus a permutation of (1, ..., n_dim)/(n_dim+1).
   pure function lattice(n_dim, k) result(barycentric)
     integer, intent(in) :: n_dim !! 2 or 3
-    integer, intent(in) :: k     !! divisions of an edge
+    integer, intent(in) :: k     !! divisions of an edge, none of 0
     real(dp) :: barycentric(n_dim + 1, k**n_dim) !! (n_dim+1, k^n_dim)  coordinates [-]
 
     integer :: y(n_dim), i, m, n, span
@@ -148,15 +172,15 @@ contains
   end function lattice
 
   !> Whether a position, in units of a cell over n_dim+1, is the centroid of a sub-simplex.
-  pure logical function is_centroid(y)
+  pure logical function is_centroid(y) result(centroid)
     integer, intent(in) :: y(:) !! (n_dim)  cumulative coordinates
 
     integer :: m, n_dim
 
     n_dim = size(y)
-    is_centroid = all(y(:n_dim - 1) > y(2:))
+    centroid = all(y(:n_dim - 1) > y(2:))
     do m = 1, n_dim
-      is_centroid = is_centroid .and. any(mod(y, n_dim + 1) == m)
+      centroid = centroid .and. any(mod(y, n_dim + 1) == m)
     end do
   end function is_centroid
 
