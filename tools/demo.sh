@@ -11,12 +11,12 @@ cmake --preset release > /dev/null
 cmake --build --preset release --target tessera
 
 status=0
-build/release/bin/tessera --compare standard,fbar -f -o build/demo input/footing/footing.inp ||
+build/release/bin/tessera --compare standard,fbar -f -o "$root/build/demo" input/footing/footing.inp ||
   status=$?
 if [ "$status" -ne 0 ] && [ "$status" -ne 7 ]; then # 7: finished, but an *EXPECT failed
   echo "demo: tessera failed with exit code $status" >&2
   exit "$status"
 fi
 
-.venv/bin/python tools/demo_plot.py build/demo
+.venv/bin/python tools/demo_plot.py "$root/build/demo"
 exit "$status"
