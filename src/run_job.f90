@@ -1,0 +1,200 @@
+!> A job from its deck to its results: what the command line asks for, formulation by formulation.
+module mpm_run_job
+  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+  use mpm_command_line, only: command_line_t
+  use mpm_deck_card, only: deck_t, folder_of
+  use mpm_diagnostics, only: diagnostics_t, to_error, warnings_text
+  use mpm_error, only: error_t, exit_deck, exit_expectation, exit_ok
+  use mpm_expectations, only: n_failed_expectations, verdict_line
+  use mpm_external_force, only: prepare_loads
+  use mpm_increments, only: begin_step, schedule_t, start_increment
+  use mpm_input_deck, only: read_deck
+  use mpm_kinds, only: dp
+  use mpm_log_model, only: model_text
+  use mpm_model, only: formulation_fbar, formulation_standard, model_t
+  use mpm_model_builder, only: build_model
+  use mpm_result_paths, only: existing_results, make_folder, result_paths, result_paths_t
+  use mpm_run_log, only: log_message
+  use mpm_run_output, only: close_output, open_output, run_output_t
+  use mpm_run_state, only: make_run_info, run_info_t, run_state_t
+  use mpm_solve_job, only: make_body, prepare_increment, solve_job
+  use mpm_system, only: body_t, free_system, open_system, system_t
+  use mpm_tangent_check, only: check_tangent, tangent_report_t
+  use mpm_text, only: integer_text, real_text
+  implicit none
+  private
+  public :: run_job
+
+  real(dp), parameter :: tangent_tolerance = 1.0e-7_dp !! of --check-tangent
+
+contains
+
+  !> Reads the deck, builds the model and runs every formulation asked for.
+  subroutine run_job(exit_code, options, error)
+    integer, intent(out) :: exit_code            !! the largest one of all formulations
+    type(command_line_t), intent(in) :: options
+    type(error_t), allocatable, intent(out) :: error
+    type(deck_t)   :: deck
+    type(model_t)  :: model, variant
+    type(run_info_t) :: info
+    integer, allocatable :: formulation(:)
+    integer :: i, code
+
+    exit_code = exit_ok
+    call read_model(model, deck, options, error)
+    if (allocated(error)) return
+    formulation = formulations(options, model)
+    call make_run_info(info, deck%name, deck%source, options%threads, options%quiet)
+    do i = 1, size(formulation)
+      variant = model
+      call choose_formulation(variant, formulation(i), size(formulation) > 1)
+      if (options%check_tangent) then
+        call run_tangent_check(code, variant, error)
+      else
+        call run_formulation(code, variant, info, options, error)
+      end if
+      if (allocated(error)) return
+      exit_code = max(exit_code, code)
+    end do
+  end subroutine run_job
+
+  !> Deck and model; warnings go to stderr.
+  subroutine read_model(model, deck, options, error)
+    type(model_t), intent(out) :: model
+    type(deck_t), intent(out)  :: deck
+    type(command_line_t), intent(in) :: options
+    type(error_t), allocatable, intent(out) :: error
+    type(diagnostics_t) :: diag
+
+    call read_deck(deck, options%deck, diag)
+    call to_error(diag, exit_deck, error)
+    if (allocated(error)) return
+    call build_model(model, deck, options%lax, diag, error)
+    if (len(warnings_text(diag)) > 0) write (error_unit, "(a)") warnings_text(diag)
+  end subroutine read_model
+
+  !> Formulations of --compare, else that of the deck.
+  pure function formulations(options, model) result(list)
+    type(command_line_t), intent(in) :: options
+    type(model_t), intent(in)        :: model
+    integer, allocatable :: list(:)
+
+    list = [model%formulation]
+    if (allocated(options%compare)) then
+      if (size(options%compare) > 0) list = options%compare
+    end if
+  end function formulations
+
+  !> Makes a model one of --compare. Expectations belong to the formulation of the deck.
+  subroutine choose_formulation(model, formulation, named)
+    type(model_t), intent(inout) :: model
+    integer, intent(in) :: formulation !! formulation_*
+    logical, intent(in) :: named       !! .true.: the job gets the name of the formulation
+    integer :: i
+
+    if (formulation /= model%formulation) then
+      do i = 1, size(model%step)
+        if (allocated(model%step(i)%expectation)) deallocate (model%step(i)%expectation)
+      end do
+    end if
+    model%formulation = formulation
+    if (named) model%job = model%job//"_"//formulation_name(formulation)
+  end subroutine choose_formulation
+
+  !> Name of a formulation on the command line and in names of jobs.
+  pure function formulation_name(formulation) result(name)
+    integer, intent(in) :: formulation !! formulation_*
+    character(:), allocatable :: name
+
+    select case (formulation)
+    case (formulation_standard)
+      name = "standard"
+    case (formulation_fbar)
+      name = "fbar"
+    case default
+      name = "unknown"
+    end select
+  end function formulation_name
+
+  !> One run with all its files.
+  subroutine run_formulation(exit_code, model, info, options, error)
+    integer, intent(out)          :: exit_code
+    type(model_t), intent(inout)  :: model
+    type(run_info_t), intent(in)  :: info
+    type(command_line_t), intent(in) :: options
+    type(error_t), allocatable, intent(out) :: error
+    type(result_paths_t) :: paths
+    type(run_output_t)   :: output
+    type(run_state_t)    :: state
+    type(error_t), allocatable :: failure
+    character(:), allocatable  :: folder
+
+    exit_code = exit_ok
+    folder = options%output
+    if (len(folder) == 0) folder = folder_of(options%deck)
+    call make_folder(folder, error)
+    if (allocated(error)) return
+    paths = result_paths(folder, model%job)
+    if (.not. options%force) call existing_results(paths, error)
+    if (allocated(error)) return
+    call open_output(output, paths, model, info, error)
+    if (allocated(error)) return
+    call solve_job(output, state, model, options%check, failure)
+    if (allocated(failure)) then
+      exit_code = failure%code
+      call log_message(output%log, failure%message, error)
+    else if (.not. options%check .and. n_failed_expectations(output%verdict) > 0) then
+      exit_code = exit_expectation
+    end if
+    call close_output(output, model, state, exit_code, error)
+    if (.not. options%quiet) call print_summary(output, paths, model, options)
+    if (allocated(failure)) call move_alloc(failure, error)
+  end subroutine run_formulation
+
+  !> What was run, what came out and where it is.
+  subroutine print_summary(output, paths, model, options)
+    type(run_output_t), intent(in)   :: output
+    type(result_paths_t), intent(in) :: paths
+    type(model_t), intent(in)        :: model
+    type(command_line_t), intent(in) :: options
+    integer :: i
+
+    if (options%check .or. options%verbose) write (output_unit, "(a)") model_text(model)
+    if (.not. options%check) then
+      do i = 1, size(output%verdict)
+        write (output_unit, "(a)") verdict_line(output%verdict(i))
+      end do
+    end if
+    write (output_unit, "(a)") model%job//": log "//paths%log//", history "//paths%history// &
+      ", fields "//paths%points//" and "//paths%mesh
+  end subroutine print_summary
+
+  !> --check-tangent: the tangent of the first increment at a random state.
+  subroutine run_tangent_check(exit_code, model, error)
+    integer, intent(out)         :: exit_code !! exit_expectation when the tangent is wrong
+    type(model_t), intent(inout) :: model
+    type(error_t), allocatable, intent(out) :: error
+    type(body_t)     :: body
+    type(system_t)   :: system
+    type(schedule_t) :: schedule
+    type(tangent_report_t) :: report
+
+    exit_code = exit_ok
+    call make_body(body, model)
+    call open_system(system, body)
+    call prepare_loads(model%step(1)%load, model%mesh, model%points)
+    call begin_step(schedule, 1, model%step(1)%schedule, [real(dp) ::])
+    call start_increment(schedule)
+    call prepare_increment(system, body, model, schedule, error)
+    if (.not. allocated(error)) call check_tangent(report, system, body)
+    call free_system(system)
+    if (allocated(error)) return
+    if (.not. report%error <= tangent_tolerance .or. .not. report%evaluated) exit_code = exit_expectation
+    write (output_unit, "(a)") model%job//" ("//formulation_name(model%formulation)// &
+      "): tangent against central differences, relative difference "//real_text(report%error)// &
+      ", allowed "//real_text(tangent_tolerance)//"; "//integer_text(report%n_columns)// &
+      " columns compared, "//integer_text(report%n_skipped)//" left out at the yield surface; "// &
+      integer_text(report%n_plastic)//" of "//integer_text(body%points%n)//" points plastic"
+  end subroutine run_tangent_check
+
+end module mpm_run_job

@@ -1,0 +1,330 @@
+!> The analysis of a job: increments of equilibrium from the first step to the last.
+module mpm_solve_job
+  use mpm_amplitude, only: time_increment_t
+  use mpm_dof_map, only: number_dofs
+  use mpm_equilibrium, only: find_equilibrium, newton_report_t, outcome_converged, outcome_memory, &
+    outcome_text
+  use mpm_error, only: error_t, exit_lost_point, exit_model, exit_no_convergence, exit_solver, &
+    make_error
+  use mpm_external_force, only: external_force, loaded_inactive_node, prepare_loads
+  use mpm_increments, only: accept_step, begin_step, cut_back, schedule_t, start_increment
+  use mpm_kinds, only: dp, ip
+  use mpm_linear_solver, only: analyse, solver_memory, solver_ok
+  use mpm_mesh_motion, only: move_mesh
+  use mpm_model, only: formulation_fbar, formulation_standard, model_t
+  use mpm_patches, only: patches_of_single_elements
+  use mpm_point_location, only: locate_points, location_report_t, locator_t, lost_is_error
+  use mpm_point_update, only: accept_points
+  use mpm_run_output, only: run_output_t, write_attempt, write_increment
+  use mpm_run_state, only: make_run_state, run_state_t
+  use mpm_sparsity, only: build_pattern, pattern_is_current
+  use mpm_system, only: body_t, find_active, free_system, open_system, system_t
+  use mpm_text, only: integer_text, real_text
+  implicit none
+  private
+  public :: make_body, prepare_increment, solve_job
+
+contains
+
+  !> Solves all steps of a model and hands every attempt and every increment to the output.
+  subroutine solve_job(output, state, model, only_check, error)
+    type(run_output_t), intent(inout) :: output        !! open
+    type(run_state_t), intent(out)    :: state         !! after the last accepted increment
+    type(model_t), intent(inout)      :: model         !! at time zero; its loads are prepared
+    logical, intent(in)               :: only_check    !! write increment 0, do not solve
+    type(error_t), allocatable, intent(out) :: error   !! no convergence, lost point, file ...
+    type(body_t)     :: body
+    type(system_t)   :: system
+    type(schedule_t) :: schedule
+    type(locator_t)  :: locator
+    integer :: i
+
+    call make_body(body, model)
+    call open_system(system, body)
+    call make_run_state(state, body%mesh%n_dim, body%mesh%n_node, body%mesh%n_el, model%patches%n)
+    state%started = wall_time()
+    call find_active(system, body%points)
+    call write_increment(output, model, body%mesh, body%points, state, error)
+    do i = 1, size(model%step)
+      call prepare_loads(model%step(i)%load, model%mesh, model%points)
+    end do
+    do i = 1, size(model%step)
+      if (allocated(error) .or. only_check) exit
+      call begin_step(schedule, i, model%step(i)%schedule, stop_times(model, i, schedule%total_time))
+      call solve_step(schedule, body, system, locator, output, state, model, error)
+    end do
+    call free_system(system)
+  end subroutine solve_job
+
+  !> The increments of one step: the algorithm.
+  subroutine solve_step(schedule, body, system, locator, output, state, model, error)
+    type(schedule_t), intent(inout)   :: schedule !! at the start of the step
+    type(body_t), intent(inout)       :: body
+    type(system_t), intent(inout)     :: system
+    type(locator_t), intent(inout)    :: locator
+    type(run_output_t), intent(inout) :: output
+    type(run_state_t), intent(inout)  :: state
+    type(model_t), intent(in)         :: model
+    type(error_t), allocatable, intent(out) :: error
+    type(newton_report_t)   :: report
+    type(location_report_t) :: location
+
+    do while (.not. schedule%finished)
+      call start_increment(schedule)                                             ! size from the last outcome
+      call prepare_increment(system, body, model, schedule, error)               ! unknowns, pattern, loads
+      if (allocated(error)) return
+      call find_equilibrium(system, report, body, model%step(schedule%step)%newton)
+      call note_attempt(state, schedule, report, system)
+      if (report%outcome == outcome_converged) call note_equilibrium(state, system, body, model)
+      call write_attempt(output, state, report, error)
+      if (allocated(error)) return
+      if (report%outcome /= outcome_converged) then
+        call shorten(schedule, report, model, error)
+        if (allocated(error)) return
+        cycle
+      end if
+      call accept_points(body, system)
+      call accept_step(schedule, report%n_iterations)
+      call lay_out_mesh(body, system, model, error)
+      if (allocated(error)) return
+      call locate_points(body%points, body%mesh, locator, model%location, location)
+      if (location%first_lost > 0 .and. model%location%lost_action == lost_is_error) then
+        call report_lost_point(error, body, location, model)
+        return
+      end if
+      call note_location(state, schedule, location)
+      call write_increment(output, model, body%mesh, body%points, state, error)
+      if (allocated(error)) return
+      call check_count(schedule, model, error)
+      if (allocated(error)) return
+    end do
+  end subroutine solve_step
+
+  !> The body at time zero; with the standard formulation every element is its own patch.
+  subroutine make_body(body, model)
+    type(body_t), intent(out) :: body
+    type(model_t), intent(in) :: model
+
+    body%mesh = model%mesh
+    body%points = model%points
+    body%material = model%material
+    select case (model%formulation)
+    case (formulation_fbar)
+      body%patches = model%patches
+    case (formulation_standard)
+      call patches_of_single_elements(body%patches, model%mesh%n_el)
+    end select
+  end subroutine make_body
+
+  !> Step times that increments must hit: those of expectations and of timed output.
+  pure function stop_times(model, i_step, start) result(times)
+    type(model_t), intent(in) :: model
+    integer, intent(in)  :: i_step   !! number of the step
+    real(dp), intent(in) :: start    !! total time at the start of the step
+    real(dp), allocatable :: times(:)
+    real(dp) :: interval
+    integer :: i
+
+    associate (step => model%step(i_step))
+      times = [real(dp) ::]
+      if (allocated(step%expectation)) times = step%expectation%time - start
+      interval = step%field_output%time_interval
+      if (step%has_field_output .and. interval > 0.0_dp) &
+        times = [times, (real(i, dp)*interval, i=1, int(step%schedule%period/interval))]
+    end associate
+  end function stop_times
+
+  !> Active elements, unknowns, external force; pattern and symbolic analysis only when the
+  !! active set or the constraints have changed.
+  subroutine prepare_increment(system, body, model, schedule, error)
+    type(system_t), intent(inout) :: system
+    type(body_t), intent(in)      :: body
+    type(model_t), intent(in)     :: model
+    type(schedule_t), intent(in)  :: schedule
+    type(error_t), allocatable, intent(out) :: error
+    type(time_increment_t) :: increment
+    integer :: outcome, node
+
+    increment = time_increment_t(schedule%step_time, schedule%size, schedule%settings%period)
+    associate (step => model%step(schedule%step))
+      call find_active(system, body%points)
+      call number_dofs(system%dofs, body%mesh, system%active, step%constraint, increment, model%amplitude)
+      call external_force(system%f_ext, step%load, body%mesh, body%points, increment, model%amplitude)
+    end associate
+    node = loaded_inactive_node(system%f_ext, system%dofs)
+    if (node > 0) then
+      call make_error(error, exit_model, "error: node "//integer_text(body%mesh%node_label(node))// &
+                      " carries a load but belongs to no element that holds material points: "// &
+                      "expected loads on the body only")
+      return
+    end if
+    if (pattern_is_current(system%map, system%active, system%dofs)) return
+    call build_pattern(system%tangent, system%map, body%patches, body%mesh, system%dofs, system%active)
+    call analyse(system%solver, system%tangent, outcome)
+    if (outcome == solver_memory) then
+      call make_error(error, exit_solver, "error: not enough memory for the analysis of the "// &
+                      integer_text(system%dofs%n)//" equations")
+    else if (outcome /= solver_ok) then
+      call make_error(error, exit_solver, "error: the pattern of the tangent cannot be analysed")
+    end if
+  end subroutine prepare_increment
+
+  !> Cuts the increment after a failed attempt; at the smallest size the run ends.
+  subroutine shorten(schedule, report, model, error)
+    type(schedule_t), intent(inout)   :: schedule
+    type(newton_report_t), intent(in) :: report
+    type(model_t), intent(in)         :: model
+    type(error_t), allocatable, intent(out) :: error
+    logical :: exhausted
+
+    call cut_back(schedule, exhausted)
+    if (report%outcome == outcome_memory) then
+      call make_error(error, exit_solver, "error: "//outcome_text(report%outcome)// &
+                      place_of(schedule, model))
+    else if (exhausted) then
+      call make_error(error, exit_no_convergence, "error: no convergence at the smallest increment "// &
+                      real_text(schedule%settings%minimum)//": "//outcome_text(report%outcome)// &
+                      worst_of(report, model)//place_of(schedule, model))
+    end if
+  end subroutine shorten
+
+  !> Where in time an attempt failed.
+  pure function place_of(schedule, model) result(text)
+    type(schedule_t), intent(in) :: schedule
+    type(model_t), intent(in)    :: model
+    character(:), allocatable :: text
+
+    text = " (step '"//model%step(schedule%step)%name//"', increment "//integer_text(schedule%increment)// &
+           ", attempt "//integer_text(schedule%attempt)//", step time "//real_text(schedule%step_time)//")"
+  end function place_of
+
+  !> Where in the mesh an attempt failed, in the numbers of the input.
+  pure function worst_of(report, model) result(text)
+    type(newton_report_t), intent(in) :: report
+    type(model_t), intent(in)         :: model
+    character(:), allocatable :: text
+
+    text = ""
+    if (report%worst_element > 0) text = text//", element "// &
+      integer_text(model%mesh%parent_label(model%mesh%parent(report%worst_element)))
+    if (report%worst_point > 0) text = text//", material point "//integer_text(report%worst_point)
+    if (report%worst_node > 0) text = text//", largest residual at node "// &
+      integer_text(model%mesh%node_label(report%worst_node))
+  end function worst_of
+
+  !> What an attempt was.
+  subroutine note_attempt(state, schedule, report, system)
+    type(run_state_t), intent(inout)  :: state
+    type(schedule_t), intent(in)      :: schedule
+    type(newton_report_t), intent(in) :: report
+    type(system_t), intent(in)        :: system
+
+    state%step = schedule%step
+    state%increment = schedule%increment
+    state%attempt = schedule%attempt
+    state%size = schedule%size
+    state%time = schedule%total_time + schedule%size
+    state%step_time = schedule%step_time + schedule%size
+    state%n_iterations = report%n_iterations
+    state%residual = report%residual(report%n_iterations)
+    state%n_active_elements = size(system%element)
+    state%wall_seconds = wall_time() - state%started
+  end subroutine note_attempt
+
+  !> Seconds of the system's clock.
+  function wall_time() result(seconds)
+    real(dp) :: seconds !! [s]
+    integer(ip) :: ticks, rate
+
+    call system_clock(ticks, rate)
+    seconds = real(ticks, dp)/real(rate, dp)
+  end function wall_time
+
+  !> Forces and displacements of the converged increment.
+  subroutine note_equilibrium(state, system, body, model)
+    type(run_state_t), intent(inout) :: state
+    type(system_t), intent(in)       :: system
+    type(body_t), intent(in)         :: body
+    type(model_t), intent(in)        :: model
+    integer :: e
+
+    state%applied = system%f_ext
+    state%reaction = merge(system%f_int - system%f_ext, 0.0_dp, system%dofs%fixed)
+    state%delta_u = system%u
+    state%node_u = state%node_u + system%u
+    state%delta_j = 1.0_dp
+    state%delta_j(system%element) = 1.0_dp + system%kinematics%delta_j_m1(system%element)
+    state%delta_j_patch = 1.0_dp
+    do e = 1, body%mesh%n_el
+      if (system%active(e)) state%delta_j_patch(model%patches%of_element(e)) = &
+        1.0_dp + system%kinematics%delta_j_bar_m1(e)
+    end do
+  end subroutine note_equilibrium
+
+  !> Times and counts after the acceptance.
+  subroutine note_location(state, schedule, location)
+    type(run_state_t), intent(inout)    :: state
+    type(schedule_t), intent(in)        :: schedule
+    type(location_report_t), intent(in) :: location
+
+    state%increment_total = schedule%increment_total
+    state%time = schedule%total_time
+    state%step_time = schedule%step_time
+    state%n_extrapolated = location%n_extrapolated
+    state%n_lost = state%n_lost + location%n_lost
+  end subroutine note_location
+
+  !> Moves the mesh with its driver, or leaves it where it was. Source: theory.md (17).
+  subroutine lay_out_mesh(body, system, model, error)
+    type(body_t), intent(inout) :: body
+    type(system_t), intent(in)  :: system
+    type(model_t), intent(in)   :: model
+    type(error_t), allocatable, intent(out) :: error
+    real(dp) :: displacement
+    integer :: inverted
+
+    if (.not. model%motion%active) return
+    associate (n_dim => body%mesh%n_dim, motion => model%motion)
+      displacement = dot_product(motion%direction(1:n_dim), system%dofs%prescribed(:, motion%driver(1)))
+      call move_mesh(body%mesh, motion, displacement, inverted)
+    end associate
+    if (inverted == 0) return
+    call make_error(error, exit_model, "error: *MOVING MESH would turn element "// &
+                    integer_text(model%mesh%parent_label(model%mesh%parent(inverted)))// &
+                    " inside out: expected a driver that stays on its side of the fixed plane")
+  end subroutine lay_out_mesh
+
+  !> A point left the mesh and the deck wants that to be an error.
+  subroutine report_lost_point(error, body, location, model)
+    type(error_t), allocatable, intent(out) :: error
+    type(body_t), intent(in)            :: body
+    type(location_report_t), intent(in) :: location
+    type(model_t), intent(in)           :: model
+    character(:), allocatable :: place
+    integer :: i
+
+    place = ""
+    do i = 1, model%mesh%n_dim
+      if (i > 1) place = place//", "
+      place = place//real_text(body%points%x(i, location%first_lost))
+    end do
+    call make_error(error, exit_lost_point, "error: "//integer_text(location%n_lost)// &
+                    " material points left the mesh, the first is point "// &
+                    integer_text(body%points%id(location%first_lost))//" at ("//place// &
+                    "): expected a mesh that reaches further, or *LOST POINTS, ACTION=FREEZE or REMOVE")
+  end subroutine report_lost_point
+
+  !> More increments than the deck allows.
+  subroutine check_count(schedule, model, error)
+    type(schedule_t), intent(in) :: schedule
+    type(model_t), intent(in)    :: model
+    type(error_t), allocatable, intent(out) :: error
+
+    if (schedule%finished .or. schedule%increment < schedule%settings%max_increments) return
+    call make_error(error, exit_no_convergence, "error: "// &
+                    integer_text(schedule%settings%max_increments)// &
+                    " increments done and the step is not finished: expected fewer, or a larger INC of *STEP"// &
+                    place_of(schedule, model))
+  end subroutine check_count
+
+end module mpm_solve_job
