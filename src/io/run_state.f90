@@ -34,6 +34,7 @@ module mpm_run_state
     real(dp) :: size = 0.0_dp           !! size of the increment in time
     integer  :: n_iterations = 0        !! corrections of Newton's method
     real(dp) :: residual = 0.0_dp       !! last relative residual [-]
+    real(dp) :: started = 0.0_dp        !! reading of the system's clock at the start [s]
     real(dp) :: wall_seconds = 0.0_dp   !! since the start of the run [s]
     integer  :: n_active_elements = 0   !! elements that host a point
     integer  :: n_lost = 0              !! points lost so far
@@ -41,7 +42,7 @@ module mpm_run_state
     real(dp), allocatable :: reaction(:, :)   !! (n_dim, n_node)  internal minus applied force where
                                               !!                  prescribed, 0 elsewhere [force]
     real(dp), allocatable :: applied(:, :)    !! (n_dim, n_node)  external nodal forces [force]
-    real(dp), allocatable :: delta_u(:, :)    !! (n_dim, n_node)  displacement of the increment [length]
+    real(dp), allocatable :: delta_u(:, :)    !! (n_dim, n_node)  of the increment [length]
     real(dp), allocatable :: node_u(:, :)     !! (n_dim, n_node)  sum of the increments [length]
     real(dp), allocatable :: delta_j(:)       !! (n_el)           det Delta F of the increment [-]
     real(dp), allocatable :: delta_j_patch(:) !! (n_patch)        patch mean of delta_j [-]
