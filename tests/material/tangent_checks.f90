@@ -1,10 +1,10 @@
-!> Rates of stress for the finite-difference tests of moduli.
+!> Simple deformations, and rates of stress for the finite-difference tests of moduli.
 module tangent_checks
   use mpm_kinds, only: dp
   use mpm_tensor, only: tensor_from_voigt, voigt_from_tensor
   implicit none
   private
-  public :: lie_derivative, moduli_times
+  public :: lie_derivative, moduli_times, shear_gradient, stretched
 
   !> Product of spatial moduli with a velocity gradient or with a rate of deformation.
   interface moduli_times
@@ -42,5 +42,25 @@ contains
     carried = matmul(velocity, tensor_from_voigt(kirchhoff))
     lie = rate - voigt_from_tensor(carried + transpose(carried))
   end function lie_derivative
+
+  !> F - I of stretches along the axes.
+  pure function stretched(a, b, c) result(h)
+    real(dp), intent(in) :: a, b, c !! stretches [-]
+    real(dp) :: h(3, 3)
+
+    h = 0.0_dp
+    h(1, 1) = a - 1.0_dp
+    h(2, 2) = b - 1.0_dp
+    h(3, 3) = c - 1.0_dp
+  end function stretched
+
+  !> F - I of a simple shear.
+  pure function shear_gradient(gamma) result(h)
+    real(dp), intent(in) :: gamma !! amount of shear [-]
+    real(dp) :: h(3, 3)
+
+    h = 0.0_dp
+    h(1, 2) = gamma
+  end function shear_gradient
 
 end module tangent_checks
