@@ -188,7 +188,8 @@ contains
     else
       line = line//"frozen "
     end if
-    line = line//real_text(verdict%expected%value)//" +- "//real_text(tolerance_of(verdict%expected))
+    line = line//real_text(verdict%expected%value)//" +- " &
+           //real_text(tolerance_of(verdict%expected))
     if (.not. verdict%reached) then
       line = line//", time not reached: FAILED"
     else if (verdict%met) then

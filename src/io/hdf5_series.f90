@@ -74,7 +74,8 @@ contains
       if (status >= 0) call h5pset_deflate_f(properties, deflate_level, status)
     end if
     if (status >= 0) then
-      call h5dcreate_f(file%id, name, stored_type(layout%kind), space, series%id, status, properties)
+      call h5dcreate_f(file%id, name, stored_type(layout%kind), space, series%id, status, &
+                       properties)
     end if
     series%is_open = status >= 0
     if (status < 0) then

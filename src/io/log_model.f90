@@ -191,8 +191,7 @@ contains
       corner = cshift(mesh%node(:, surface%element(i)), surface%face(i))
       edge_1(:mesh%n_dim) = mesh%x(:, corner(2)) - mesh%x(:, corner(1))
       if (mesh%n_dim == 3) edge_2 = mesh%x(:, corner(3)) - mesh%x(:, corner(1))
-      normal = [edge_1(2)*edge_2(3) - edge_1(3)*edge_2(2), edge_1(3)*edge_2(1) - edge_1(1)*edge_2(3), &
-                edge_1(1)*edge_2(2) - edge_1(2)*edge_2(1)]
+      normal = cshift(edge_1, 1)*cshift(edge_2, 2) - cshift(edge_1, 2)*cshift(edge_2, 1)
       area = area + 0.5_dp*norm2(normal)
     end do
   end function area_of

@@ -92,4 +92,3 @@ contains
   end subroutine refuse_existing
 
 end module mpm_result_paths
-  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char

@@ -98,7 +98,8 @@ contains
     if (allocated(error)) return
     call append_history(output%tables, output%results%points%file, state, values, error)
     if (allocated(error)) return
-    call append_ledger(output%tables, output%results%points%file, state, point_ledger(points), error)
+    call append_ledger(output%tables, output%results%points%file, state, point_ledger(points), &
+                       error)
     if (allocated(error)) return
     call evaluate_expectations(output%verdict, points, model%patches, state)
     due = state%step == 0

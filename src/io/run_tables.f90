@@ -16,7 +16,8 @@ module mpm_run_tables
   public :: append_history, append_iterations, append_ledger
 
   character(13), parameter :: iteration_columns(10) = [character(13) :: "step", "increment", &
-    "attempt", "iteration", "residual", "kinematics", "stress", "assembly", "factorisation", "solve"]
+    "attempt", "iteration", "residual", "kinematics", "stress", "assembly", "factorisation", &
+    "solve"]
   integer, parameter :: n_iteration_integers = 4 !! leading columns of integers
   character(13), parameter :: ledger_columns(9) = [character(13) :: "step", "increment", "time", &
     "count", "mass", "volume", "lost", "extrapolated", "centre"]
@@ -109,7 +110,8 @@ contains
       case ("centre")
         layout%n_columns = 3
       end select
-      call create_series(series(i), file, "/tessera/ledger/"//trim(ledger_columns(i)), layout, error)
+      call create_series(series(i), file, "/tessera/ledger/"//trim(ledger_columns(i)), layout, &
+                         error)
     end do
   end subroutine create_ledger
 

@@ -26,7 +26,7 @@ contains
     type(model_t), intent(in) :: model               !! driver, periods
     type(error_t), allocatable, intent(out) :: error !! exit_file
     character(*), parameter :: head = "# step  inc  att iter        time         size" &
-      //"      reaction     residual   active    lost    wall s    left s  outcome"
+      //"      reaction     residual  active    lost    wall s    left s  outcome"
 
     status%end_time = end_of_run(model)
     call find_driver(status, model)
