@@ -3,6 +3,8 @@ module mpm_deck_mesh_builder
   use mpm_build_context, only: at_field, at_parameter, build_context_t, fault
   use mpm_deck_card, only: deck_card_t, deck_t, field_count, field_integer, field_real, &
     & has_parameter, parameter_choice, parameter_text
+  use mpm_error, only: exit_model
+  use mpm_face_table, only: build_face_table, face_table_t, find_face
   use mpm_kinds, only: dp
   use mpm_label_table, only: build_label_table, find_label
   use mpm_labelled_mesh, only: add_set, body_element, carrier_element, edge_element, &
@@ -50,6 +52,7 @@ contains
     type(parent_mesh_t), intent(inout) :: parent    !! n_dim and order are set
     type(deck_t), intent(in) :: deck                !! the deck
     type(build_context_t), intent(inout) :: context !! takes errors
+    character(:), allocatable :: first_type
     integer :: i, first
 
     first = 0
@@ -58,16 +61,15 @@ contains
       if (first == 0 .or. solid_dimension(element_type(deck%card(i))) > 0) first = i
       if (solid_dimension(element_type(deck%card(i))) > 0) exit
     end do
-    associate (first_type => element_type(deck%card(first)))
-      parent%n_dim = solid_dimension(first_type)
-      parent%order = element_order(first_type)
-      if (parent%n_dim == 0) then
-        call fault(context, deck, at_parameter(first, "TYPE"), "the deck has no elements for " &
-          & //"material, "//first_type//" only carries surfaces: expected CPE3, CPE6, C3D4 or " &
-          & //"C3D10", solid_hint(first_type))
-        return
-      end if
-    end associate
+    first_type = element_type(deck%card(first))
+    parent%n_dim = solid_dimension(first_type)
+    parent%order = element_order(first_type)
+    if (parent%n_dim == 0) then
+      call fault(context, deck, at_parameter(first, "TYPE"), "the deck has no elements for " &
+        & //"material, "//first_type//" only carries surfaces: expected CPE3, CPE6, C3D4 or " &
+        & //"C3D10", solid_hint(first_type))
+      return
+    end if
     do i = 1, size(deck%card)
       if (deck%card(i)%keyword == "ELEMENT") call check_type(parent, deck, context, i)
     end do
@@ -211,9 +213,14 @@ contains
         lines%el_label(i) = field_integer(line, 1)
         do k = 2, field_count(line)
           lines%node(k - 1, i) = find_label(mesh%node_table, field_integer(line, k))
-          if (lines%node(k - 1, i) == 0) call fault(context, deck, at_field(lines%el_card(i), &
-            & lines%el_line(i), k), "node "//integer_text(field_integer(line, k)) &
-            & //" is not defined: expected a node of *NODE")
+          if (lines%node(k - 1, i) == 0) then
+            call fault(context, deck, at_field(lines%el_card(i), lines%el_line(i), k), "node " &
+              & //integer_text(field_integer(line, k))//" is not defined: expected a node of *NODE")
+          else if (any(lines%node(:k - 2, i) == lines%node(k - 1, i))) then
+            call fault(context, deck, at_field(lines%el_card(i), lines%el_line(i), k), "node " &
+              & //integer_text(field_integer(line, k))//" appears twice in element " &
+              & //integer_text(lines%el_label(i))//": expected different nodes", code=exit_model)
+          end if
         end do
       end associate
     end do
@@ -303,23 +310,28 @@ contains
     end do
   end function renumbered
 
-  !> Carriers hang on the body.
+  !> Carriers are faces of the body.
   subroutine check_carriers(mesh, lines, deck, context)
     type(labelled_mesh_t), intent(in) :: mesh       !! complete but for sets
     type(deck_lines_t), intent(in) :: lines         !! elements
     type(deck_t), intent(in) :: deck                !! the deck
     type(build_context_t), intent(inout) :: context !! takes errors
-    integer :: i, k
+    type(face_table_t) :: table
+    integer :: i, element, face
 
-    do i = 1, lines%n_el
-      if (mesh%kind(i) /= carrier_element) cycle
-      do k = 1, mesh%parent%n_dim
-        if (mesh%carrier_node(k, mesh%item(i)) > 0) cycle
-        call fault(context, deck, at_field(lines%el_card(i), lines%el_line(i), k + 1), "node " &
-          & //integer_text(lines%node_label(lines%node(k, i)))//" belongs to no element of the " &
-          & //"body: expected a face of the body")
+    associate (parent => mesh%parent)
+      if (size(parent%carrier, 2) == 0) return
+      call build_face_table(table, parent%node(:parent%n_dim + 1, :), parent%n_node)
+      do i = 1, lines%n_el
+        if (mesh%kind(i) /= carrier_element) cycle
+        element = 0
+        if (all(parent%carrier(:, mesh%item(i)) > 0)) &
+          call find_face(table, parent%carrier(:, mesh%item(i)), element, face)
+        if (element == 0) call fault(context, deck, at_field(lines%el_card(i), lines%el_line(i), 1), &
+          & "boundary element "//integer_text(lines%el_label(i))//" is no face of the body: " &
+          & //"expected the nodes of a face", code=exit_model)
       end do
-    end do
+    end associate
   end subroutine check_carriers
 
   !> Sets named by NSET= of *NODE and ELSET= of *ELEMENT.

@@ -41,7 +41,7 @@ contains
       call build_method(model, deck, context, mesh%parent%order)
       call build_points(model, deck, context)
       call build_steps(model, deck, context)
-      call report_unused(context, deck)
+      if (context%diag%n_errors == 0) call report_unused(context, deck)
       if (context%diag%n_errors == 0) call check_supports(model, deck, context)
       if (context%diag%n_errors == 0) call check_driver(model, deck, context)
     end if

@@ -70,7 +70,11 @@ contains
         end if
       end associate
     end do
-    call close_element_set(mesh, list, deck, context, i_card)
+    if (context%diag%n_errors > n_before) then
+      call add_set(mesh%parent%element_set, name, list_items(list%body))
+    else
+      call close_element_set(mesh, list, deck, context, i_card)
+    end if
   end subroutine build_element_set
 
   !> Puts the elements of a list into a set of the right kind.

@@ -2,7 +2,7 @@
 module mpm_step_builder
   use mpm_boundary_builder, only: add_boundary, begin_boundary_step, boundary_state_t, &
     & close_boundary_step, fix_boundary, open_boundary
-  use mpm_build_context, only: at_card, at_field, build_context_t, fault
+  use mpm_build_context, only: at_field, build_context_t, fault
   use mpm_deck_card, only: deck_t, field_count, field_real, has_parameter, parameter_integer, &
     & parameter_real, parameter_text
   use mpm_expectation_builder, only: build_expectation
@@ -34,11 +34,6 @@ contains
       if (deck%card(i)%keyword == "STEP") n = n + 1
     end do
     allocate (model%step(n))
-    if (n == 0) then
-      call fault(context, deck, at_card(size(deck%card)), "the deck has no step: expected *STEP " &
-                 //"to *END STEP")
-      return
-    end if
     call open_boundary(boundary, model)
     n = 0
     first = 0
