@@ -235,13 +235,18 @@ contains
     ok = .true.
     select case (name)
     case ("output")
+      call check_first(len(options%output) == 0, name, error)
       if (len(value) == 0) call usage_error(error, "--output is empty: expected a folder")
       options%output = value
     case ("threads")
+      call check_first(options%threads == 0, name, error)
+      if (allocated(error)) return
       call parse_integer(value, options%threads, ok)
       if (.not. ok .or. options%threads < 1) &
         call usage_error(error, "--threads is '"//value//"': expected an integer > 0")
     case ("compare")
+      call check_first(size(options%compare) == 0, name, error)
+      if (allocated(error)) return
       call set_formulations(options, value, error)
     case default
       options%schema_markdown = value == "markdown"
@@ -250,6 +255,15 @@ contains
         call usage_error(error, "--schema is '"//value//"': expected json or markdown")
     end select
   end subroutine set_value
+
+  !> Refuses an option that was given before.
+  pure subroutine check_first(is_first, name, error)
+    logical, intent(in)      :: is_first             !! .false.: it was given before
+    character(*), intent(in) :: name                 !! long name
+    type(error_t), allocatable, intent(out) :: error !! the refusal
+
+    if (.not. is_first) call usage_error(error, "--"//name//" is given twice: expected it once")
+  end subroutine check_first
 
   !> Takes the formulations to compare.
   pure subroutine set_formulations(options, value, error)

@@ -1,6 +1,6 @@
 !> JOB.log: everything about a run that a reader may ask for later.
 module mpm_run_log
-  use mpm_equilibrium, only: newton_report_t, outcome_converged
+  use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_text
   use mpm_error, only: error_t
   use mpm_expectations, only: n_failed_expectations, verdict_line, verdict_t
   use mpm_kinds, only: dp
@@ -11,7 +11,7 @@ module mpm_run_log
   use mpm_text_file, only: close_text_file, open_text_file, text_file_t, write_line
   implicit none
   private
-  public :: run_log_t, close_log, log_attempt, log_message, log_summary, open_log, outcome_text
+  public :: run_log_t, close_log, log_attempt, log_message, log_summary, open_log
 
   character(*), parameter :: line_end = new_line("a")
 
@@ -171,18 +171,6 @@ contains
       end associate
     end do
   end function resultant_text
-
-  !> An outcome of Newton's method in words.
-  pure function outcome_text(outcome) result(text)
-    integer, intent(in) :: outcome !! outcome_*
-    character(:), allocatable :: text
-    character(40), parameter :: words(0:6) = [character(40) :: "converged", "an element inverted", &
-      "the stress update failed", "stagnated", "too many iterations", "the tangent is singular", &
-      "the linear solver ran out of memory"]
-
-    text = "unknown outcome"
-    if (outcome >= 0 .and. outcome <= ubound(words, 1)) text = trim(words(outcome))
-  end function outcome_text
 
   !> Closes the log.
   subroutine close_log(log, error)

@@ -1,6 +1,6 @@
 !> All output of a run, driven by three events: an attempt, an accepted increment, the end.
 module mpm_run_output
-  use mpm_equilibrium, only: newton_report_t, outcome_converged
+  use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_text
   use mpm_error, only: error_t
   use mpm_expectations, only: collect_expectations, evaluate_expectations, verdict_t
   use mpm_hdf5_file, only: flush_hdf5_file
@@ -15,7 +15,7 @@ module mpm_run_output
   use mpm_result_paths, only: result_paths_t
   use mpm_results_file, only: close_results, is_field_output_due, open_results, results_file_t, &
                               write_increment_fields
-  use mpm_run_log, only: close_log, log_attempt, log_summary, open_log, outcome_text, run_log_t
+  use mpm_run_log, only: close_log, log_attempt, log_summary, open_log, run_log_t
   use mpm_run_state, only: estimated_time_left, run_info_t, run_state_t
   use mpm_run_tables, only: append_history, append_iterations, append_ledger, close_tables, &
                             open_tables, run_tables_t
