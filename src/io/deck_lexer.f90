@@ -65,7 +65,7 @@ contains
 
     n = 0
     first = 1
-    if (index(text, mark) == 1) first = 4
+    if (text(:min(3, len(text))) == mark) first = 4
     do i = first, len(text)
       if (text(i:i) == achar(13)) then
         if (i == len(text)) cycle
@@ -133,7 +133,8 @@ contains
     first = verify(text, " "//achar(9))
     begins_with_star = .false.
     if (first == 0) return
-    begins_with_star = text(first:first) == "*" .and. index(text(first:), "**") /= 1
+    begins_with_star = text(first:first) == "*" .and. &
+                       text(first:min(first + 1, len(text))) /= "**"
   end function begins_with_star
 
   !> Goes on to the next line of the file.

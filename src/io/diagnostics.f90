@@ -287,7 +287,7 @@ contains
     integer :: cut, width
 
     text = place%path//":"
-    if (place%line > 0) text = text//integer_text(place%line)//":"//integer_text(place%first)//":"
+    if (place%line > 0) text = text//integer_text(place%line)//":"//integer_text(screen_column(place))//":"
     text = text//trim(merge(" error:  ", " warning:", is_error))//" "//message
     if (place%line == 0 .or. len_trim(place%text) == 0) then
       return
@@ -303,6 +303,18 @@ contains
     text = text//new_line("a")//number//"| "//excerpt(place%text, cut) &
            //new_line("a")//"      | "//pointer_line
   end function formatted
+
+  !> Column of the token on the screen: a character of several bytes counts once.
+  pure integer function screen_column(place)
+    type(source_place_t), intent(in) :: place !! what is pointed at
+    integer :: i
+
+    screen_column = place%first
+    if (.not. allocated(place%text)) return
+    do i = 1, min(place%first - 1, len(place%text))
+      if (iand(ichar(place%text(i:i)), 192) == 128) screen_column = screen_column - 1
+    end do
+  end function screen_column
 
   !> The part of a line that is shown, without control characters.
   pure function excerpt(line, cut) result(part)
