@@ -46,7 +46,7 @@ module mpm_equilibrium
     real(dp), allocatable :: residual(:) !! (n)  f_ext - f_int of the unknowns [force]
     real(dp), allocatable :: x(:)        !! (n)  correction [length]
     real(dp) :: norm = 0.0_dp            !! of the residual [force]
-    real(dp) :: scale = 0.0_dp           !! norm of external force and reactions [force]
+    real(dp) :: stiffness = 0.0_dp       !! largest entry of the tangent [force/length]
   end type newton_state_t
 
 contains
@@ -92,6 +92,7 @@ contains
     report%n_iterations = iteration
     call cpu_time(clock(1))
     call assemble_tangent(system%tangent, system%map, body%mesh, body%patches, system%kinematics, system%sums)
+    newton%stiffness = maxval(abs(system%tangent%val))
     rhs = newton%residual
     if (iteration == 1) then
       allocate (force, mold=system%u)
@@ -166,15 +167,26 @@ contains
     end if
     call gather_free(system%dofs, system%f_ext - system%f_int, newton%residual)
     newton%norm = norm2(newton%residual)
-    newton%scale = norm2(merge(system%f_int, system%f_ext, system%dofs%fixed .and. &
-                               spread(system%dofs%active, 1, size(system%u, 1))))
-    report%residual(iteration) = relative(newton%norm, newton%scale)
+    report%residual(iteration) = relative(newton%norm, force_scale(newton, system))
     report%n_plastic = system%sums%n_plastic
     report%flowing(iteration) = report%n_plastic
     if (.not. newton%norm <= huge(1.0_dp)) report%outcome = outcome_stagnated
   end subroutine measure
 
-  !> Residual over external force and reactions; 0 when both vanish.
+  !> Norm of external force and reactions, at least a millionth of stiffness times displacement:
+  !! a body that moves without stress has no other forces than rounding errors.
+  pure function force_scale(newton, system) result(scale)
+    type(newton_state_t), intent(in) :: newton
+    type(system_t), intent(in)       :: system
+    real(dp) :: scale !! [force]
+    logical :: reacts(size(system%u, 1), size(system%u, 2))
+
+    reacts = system%dofs%fixed .and. spread(system%dofs%active, 1, size(system%u, 1))
+    scale = max(norm2(merge(system%f_int, system%f_ext, reacts)), &
+                1.0e-6_dp*newton%stiffness*maxval(abs(system%u)))
+  end function force_scale
+
+  !> Residual over the scale of the forces; 0 when both vanish.
   pure function relative(norm, scale) result(ratio)
     real(dp), intent(in) :: norm, scale !! [force]
     real(dp) :: ratio                   !! [-]

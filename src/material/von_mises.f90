@@ -8,6 +8,10 @@ module mpm_von_mises
   private
   public :: principal_state_t, return_radially
 
+  !> A point that was returned to the yield surface stays elastic at rest: without this margin
+  !! rounding would decide, and the first tangent of an increment would depend on the compiler.
+  real(dp), parameter :: yield_tolerance = 1.0e-12_dp
+
   !> Result of a stress update in principal axes.
   type :: principal_state_t
     real(dp) :: kirchhoff(3) = 0.0_dp              !! [force/length^2]
@@ -74,7 +78,7 @@ contains
     slope = 0.0_dp
     shear_3 = 3.0_dp*shear_modulus(material)
     call yield_stress_at(material, plastic_strain, strength, slope, segment_end)
-    if (equivalent <= strength) return
+    if (equivalent <= strength*(1.0_dp + yield_tolerance)) return
     reached = plastic_strain
     do
       flow = (reached - plastic_strain) &
