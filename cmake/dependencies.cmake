@@ -3,10 +3,11 @@
 find_package(UMFPACK 5.7 REQUIRED)
 find_package(METIS 5.1 REQUIRED)
 
+# Without the component HL, which nothing here uses: on a Debian without the development files of curl
+# and OpenSSL CMake takes it for found, but names a library that does not exist.
 set(HDF5_PREFER_PARALLEL FALSE)
-find_package(HDF5 1.10 REQUIRED COMPONENTS Fortran HL)
+find_package(HDF5 1.10 REQUIRED COMPONENTS Fortran)
 
 add_library(tessera_hdf5 INTERFACE)
 target_include_directories(tessera_hdf5 SYSTEM INTERFACE ${HDF5_Fortran_INCLUDE_DIRS})
-target_link_libraries(tessera_hdf5 INTERFACE
-  ${HDF5_Fortran_HL_LIBRARIES} ${HDF5_Fortran_LIBRARIES})
+target_link_libraries(tessera_hdf5 INTERFACE ${HDF5_Fortran_LIBRARIES})
