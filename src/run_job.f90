@@ -44,7 +44,8 @@ contains
     call read_model(model, deck, options, error)
     if (allocated(error)) return
     formulation = formulations(options, model)
-    call make_run_info(info, deck%name, deck%source, options%threads, options%quiet)
+    call make_run_info(info, deck%file(1)%path, deck%source, options%threads, options%quiet)
+    info%verbose = options%verbose
     do i = 1, size(formulation)
       variant = model
       call choose_formulation(variant, formulation(i), size(formulation) > 1)

@@ -15,7 +15,7 @@ module mpm_solve_job
   use mpm_patches, only: patches_of_single_elements
   use mpm_point_location, only: locate_points, location_report_t, locator_t, lost_is_error
   use mpm_point_update, only: accept_points
-  use mpm_run_output, only: run_output_t, write_attempt, write_increment
+  use mpm_run_output, only: run_output_t, write_attempt, write_increment, write_last_state
   use mpm_run_state, only: make_run_state, run_state_t
   use mpm_sparsity, only: build_pattern, pattern_is_current
   use mpm_system, only: body_t, find_active, free_system, open_system, system_t
@@ -53,8 +53,24 @@ contains
       call begin_step(schedule, i, model%step(i)%schedule, stop_times(model, i, schedule%total_time))
       call solve_step(schedule, body, system, locator, output, state, model, error)
     end do
+    if (allocated(error)) call keep_last_state(output, state, model, body, schedule)
     call free_system(system)
   end subroutine solve_job
+
+  !> Before a run ends early: the fields of the last accepted increment. The failure that ends the
+  !! run is the one to tell; one more while saving is not.
+  subroutine keep_last_state(output, state, model, body, schedule)
+    type(run_output_t), intent(inout) :: output
+    type(run_state_t), intent(inout)  :: state    !! back at the last accepted increment
+    type(model_t), intent(in)         :: model
+    type(body_t), intent(in)          :: body
+    type(schedule_t), intent(in)      :: schedule
+    type(error_t), allocatable :: ignored
+
+    state%time = schedule%total_time
+    state%step_time = schedule%step_time
+    call write_last_state(output, model, body%mesh, body%points, state, ignored)
+  end subroutine keep_last_state
 
   !> The increments of one step: the algorithm.
   subroutine solve_step(schedule, body, system, locator, output, state, model, error)

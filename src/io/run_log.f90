@@ -11,7 +11,7 @@ module mpm_run_log
   use mpm_text_file, only: close_text_file, open_text_file, text_file_t, write_line
   implicit none
   private
-  public :: run_log_t, close_log, log_attempt, log_message, log_summary, open_log
+  public :: run_log_t, attempt_text, close_log, log_attempt, log_message, log_summary, open_log
 
   character(*), parameter :: line_end = new_line("a")
 
@@ -60,12 +60,20 @@ contains
     type(run_state_t), intent(in)  :: state          !! step, increment, attempt
     type(newton_report_t), intent(in) :: report      !! of the attempt
     type(error_t), allocatable, intent(out) :: error !! exit_file
-    character(:), allocatable :: text
-    integer :: i
 
     log%n_attempts = log%n_attempts + 1
     log%n_iterations = log%n_iterations + report%n_iterations
     if (allocated(report%seconds)) log%seconds = log%seconds + sum(report%seconds, 2)
+    call write_line(log%file, attempt_text(state, report), error)
+  end subroutine log_attempt
+
+  !> Every iteration of an attempt at an increment, and its outcome.
+  pure function attempt_text(state, report) result(text)
+    type(run_state_t), intent(in)  :: state          !! step, increment, attempt
+    type(newton_report_t), intent(in) :: report      !! of the attempt
+    character(:), allocatable :: text
+    integer :: i
+
     text = "step "//integer_text(state%step)//" increment "//integer_text(state%increment) &
            //" attempt "//integer_text(state%attempt)//", time "//real_text(state%time)//", size " &
            //real_text(state%size)
@@ -77,8 +85,7 @@ contains
     text = text//line_end//"  "//outcome_text(report%outcome)//" after " &
            //integer_text(report%n_iterations)//" iterations"
     if (report%outcome /= outcome_converged) text = text//worst_text(report)
-    call write_line(log%file, text, error)
-  end subroutine log_attempt
+  end function attempt_text
 
   !> One iteration of Newton's method.
   pure function iteration_text(report, i) result(text)

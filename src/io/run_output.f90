@@ -1,5 +1,6 @@
 !> All output of a run, driven by three events: an attempt, an accepted increment, the end.
 module mpm_run_output
+  use, intrinsic :: iso_fortran_env, only: error_unit
   use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_text
   use mpm_error, only: error_t
   use mpm_expectations, only: collect_expectations, evaluate_expectations, verdict_t
@@ -15,15 +16,16 @@ module mpm_run_output
   use mpm_result_paths, only: result_paths_t
   use mpm_results_file, only: close_results, is_field_output_due, open_results, results_file_t, &
                               write_increment_fields
-  use mpm_run_log, only: close_log, log_attempt, log_summary, open_log, run_log_t
+  use mpm_run_log, only: attempt_text, close_log, log_attempt, log_summary, open_log, run_log_t
   use mpm_run_state, only: estimated_time_left, run_info_t, run_state_t
   use mpm_run_tables, only: append_history, append_iterations, append_ledger, close_tables, &
                             open_tables, run_tables_t
   use mpm_status_file, only: open_status, status_file_t, write_status
-  use mpm_text_file, only: close_text_file, text_file_t
+  use mpm_text_file, only: close_text_file, ignore_size_signal, text_file_t
   implicit none
   private
   public :: run_output_t, close_output, open_output, write_attempt, write_increment
+  public :: write_last_state
 
   !> Everything that is open during a run.
   type :: run_output_t
@@ -35,6 +37,8 @@ module mpm_run_output
     type(history_column_t), allocatable :: column(:) !! of *HISTORY
     type(verdict_t), allocatable :: verdict(:)       !! of *EXPECT
     logical :: quiet = .false.                       !! no progress on stderr
+    logical :: verbose = .false.                     !! every Newton iteration on stderr
+    integer :: n_shown = -1                          !! accepted increments at the last field output
   end type run_output_t
 
 contains
@@ -47,7 +51,9 @@ contains
     type(run_info_t), intent(in) :: info             !! deck and program
     type(error_t), allocatable, intent(out) :: error !! exit_file
 
+    call ignore_size_signal()
     output%quiet = info%quiet
+    output%verbose = info%verbose
     output%column = history_columns(model)
     call collect_expectations(output%verdict, model)
     call open_log(output%log, paths%log, model, info, error)
@@ -74,10 +80,15 @@ contains
     call write_status(output%status, state, outcome_text(report%outcome), error)
     if (allocated(error)) return
     call append_iterations(output%tables, output%results%points%file, state, report, error)
+    if (allocated(error)) return
     if (report%outcome /= outcome_converged) then
       call flush_hdf5_file(output%results%points%file, error)
     end if
     if (output%quiet) return
+    if (output%verbose) then
+      write (error_unit, "(a)") attempt_text(state, report)
+      return
+    end if
     call show_progress(state, estimated_time_left(state, output%status%end_time))
   end subroutine write_attempt
 
@@ -105,11 +116,27 @@ contains
     due = state%step == 0
     if (.not. due) due = is_field_output_due(model%step(state%step), state)
     if (due) then
+      output%n_shown = state%increment_total
       call write_increment_fields(output%results, model, mesh, points, state, error)
     else
       call flush_hdf5_file(output%results%points%file, error)
     end if
   end subroutine write_increment
+
+  !> Writes the fields of the last accepted increment before a run ends early, unless they are
+  !! there already.
+  subroutine write_last_state(output, model, mesh, points, state, error)
+    type(run_output_t), intent(inout) :: output      !! open
+    type(model_t), intent(in)     :: model           !! steps and patches
+    type(mesh_t), intent(in)      :: mesh            !! where it is now
+    type(points_t), intent(in)    :: points          !! converged state
+    type(run_state_t), intent(in) :: state           !! after the last accepted increment
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+
+    if (output%n_shown == state%increment_total) return
+    output%n_shown = state%increment_total
+    call write_increment_fields(output%results, model, mesh, points, state, error)
+  end subroutine write_last_state
 
   !> Writes the summary and closes everything.
   subroutine close_output(output, model, state, exit_code, error)

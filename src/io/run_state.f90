@@ -20,6 +20,7 @@ module mpm_run_state
     character(:), allocatable :: started   !! date and time of the start, ISO 8601
     integer :: n_threads = 1               !! OpenMP threads
     logical :: quiet = .false.             !! .true.: no progress on the terminal
+    logical :: verbose = .false.           !! .true.: every Newton iteration on the terminal
   end type run_info_t
 
   !> Where a run stands after an attempt at an increment. The fields of an attempt that failed
@@ -91,9 +92,9 @@ contains
   end function estimated_time_left
 
   !> What a run tells about itself: the deck, this program and the clock of the machine.
-  subroutine make_run_info(info, deck_name, deck_text, n_threads, quiet)
+  subroutine make_run_info(info, deck_path, deck_text, n_threads, quiet)
     type(run_info_t), intent(out) :: info   !! complete
-    character(*), intent(in) :: deck_name   !! file name of the deck
+    character(*), intent(in) :: deck_path   !! file of the deck
     character(*), intent(in) :: deck_text   !! full text of the deck with its includes
     integer, intent(in) :: n_threads        !! OpenMP threads
     logical, intent(in) :: quiet            !! no progress on the terminal
@@ -101,7 +102,7 @@ contains
     character(10) :: time
     character(5)  :: zone
 
-    info%deck_name = deck_name
+    info%deck_name = deck_path(index(deck_path, "/", back=.true.) + 1:)
     info%deck_text = deck_text
     info%n_threads = n_threads
     info%quiet = quiet
