@@ -3,11 +3,14 @@
 !! Through the C library: the flush of Fortran's run-time library does not report a full disk.
 module mpm_text_file
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_int, &
-                                         c_null_char, c_null_ptr, c_ptr, c_size_t
+                                         c_intptr_t, c_null_char, c_null_ptr, c_ptr, c_size_t
   use mpm_error, only: error_t, exit_file, make_error
   implicit none
   private
-  public :: text_file_t, close_text_file, open_text_file, write_line
+  public :: text_file_t, close_text_file, ignore_size_signal, open_text_file, write_line
+
+  integer(c_int), parameter :: size_signal = 25_c_int      !! SIGXFSZ of Linux
+  integer(c_intptr_t), parameter :: ignored = 1_c_intptr_t !! SIG_IGN
 
   !> An open text file.
   type :: text_file_t
@@ -47,6 +50,14 @@ module mpm_text_file
       integer(c_int) :: status
     end function c_close
 
+    !> Sets what happens at a signal.
+    function c_signal(number, action) bind(c, name="signal") result(previous)
+      import :: c_int, c_intptr_t
+      integer(c_int), value :: number
+      integer(c_intptr_t), value :: action
+      integer(c_intptr_t) :: previous
+    end function c_signal
+
     !> Where the number of the last error is.
     function c_error_number() bind(c, name="__errno_location") result(address)
       import :: c_ptr
@@ -69,6 +80,14 @@ module mpm_text_file
   end interface
 
 contains
+
+  !> Makes a limit of the file size an error of the write that hits it; by default the system
+  !! ends the program.
+  subroutine ignore_size_signal()
+    integer(c_intptr_t) :: previous
+
+    previous = c_signal(size_signal, ignored)
+  end subroutine ignore_size_signal
 
   !> Opens a file for writing; what was in it is lost.
   subroutine open_text_file(file, path, error)
