@@ -220,6 +220,7 @@ contains
     type(boundary_state_t), intent(inout) :: state                !! ready for the next step
     real(dp), intent(in) :: period                                !! length of the step
     type(amplitude_t), intent(in) :: amplitude(:)                 !! amplitudes of the model
+    type(constraint_t) :: next
     logical, allocatable :: left(:)
     integer :: a, d, n_node
 
@@ -229,7 +230,8 @@ contains
       left = state%fixed(d, :)
       do a = 1, n_node
         if (.not. left(a)) cycle
-        constraint = [constraint, alike(state, left, d, a)]
+        next = alike(state, left, d, a)
+        constraint = [constraint, next]
         left(constraint(size(constraint))%node) = .false.
       end do
       do a = 1, n_node
