@@ -5,6 +5,7 @@ module mpm_text
   implicit none
   private
   public :: to_upper, same_name, normalize_keyword, nearest_word
+  public :: bytes_of_character
   public :: parse_integer, parse_real, parse_real_list, integer_text, real_text
 
   integer, parameter :: i64 = selected_int_kind(18)
@@ -283,6 +284,29 @@ contains
       if (first > len(text) + 1) exit
     end do
   end subroutine parse_real_list
+
+  !> Number of bytes of the UTF-8 character that begins at a byte, 0 if none begins there: a stray
+  !! or missing byte, an overlong form, a surrogate.
+  pure integer function bytes_of_character(text, first) result(n)
+    character(*), intent(in) :: text  !! any bytes
+    integer, intent(in)      :: first !! 1..len(text)
+    integer :: byte, i, second
+
+    byte = ichar(text(first:first))
+    n = 1
+    if (byte < 128) return
+    n = 0
+    if (byte < 194 .or. byte > 244) return
+    n = merge(2, merge(3, 4, byte < 240), byte < 224)
+    if (first + n - 1 > len(text)) n = 0
+    do i = first + 1, first + n - 1
+      if (iand(ichar(text(i:i)), 192) /= 128) n = 0
+    end do
+    if (n == 0) return
+    second = ichar(text(first + 1:first + 1))
+    if ((byte == 224 .and. second < 160) .or. (byte == 237 .and. second > 159)) n = 0
+    if ((byte == 240 .and. second < 144) .or. (byte == 244 .and. second > 143)) n = 0
+  end function bytes_of_character
 
   !> Shortest text of an integer.
   pure function integer_text(value) result(text)

@@ -1,8 +1,9 @@
 !> From the bytes of a file to logical lines with tokens: comments, quotes, continuation.
 module mpm_deck_lexer
   use mpm_deck_card, only: append_field, deck_field_t, deck_line_t
-  use mpm_diagnostics, only: diagnostics_t, error_at_place, source_place_t
-  use mpm_text, only: integer_text
+  use mpm_diagnostics, only: diagnostics_t, error_at_place
+  use mpm_source_excerpt, only: source_place_t
+  use mpm_text, only: bytes_of_character, integer_text
   implicit none
   private
   public :: source_file_t, load_file, next_line, line_end, line_keyword, line_data
@@ -182,25 +183,17 @@ contains
   !> Position of the first control character or byte that is not UTF-8, 0 if there is none.
   pure integer function first_bad_byte(text) result(at)
     character(*), intent(in) :: text !! a line
-    integer :: byte, i, n_more
+    integer :: byte, n
 
-    n_more = 0
-    at = 0
-    do i = 1, len(text)
-      byte = ichar(text(i:i))
-      if (n_more > 0) then
-        if (iand(byte, 192) /= 128) return
-        n_more = n_more - 1
-        if (n_more == 0) at = 0
-      else if ((byte < 32 .and. byte /= 9) .or. byte == 127) then
-        at = i
-        return
-      else if (byte >= 128) then
-        at = i
-        if (byte < 194 .or. byte > 244) return
-        n_more = merge(1, merge(2, 3, byte < 240), byte < 224)
-      end if
+    at = 1
+    do while (at <= len(text))
+      byte = ichar(text(at:at))
+      if ((byte < 32 .and. byte /= 9) .or. byte == 127) return
+      n = bytes_of_character(text, at)
+      if (n == 0) return
+      at = at + n
     end do
+    at = 0
   end function first_bad_byte
 
   !> Where the content of the current line ends: before a comment, without trailing blanks.

@@ -181,6 +181,7 @@ contains
     first = 1
     scope = "a deck"
     if (rule%once == once_in_scope .and. len_trim(rule%parent) == 0) then
+      if (.not. walk%inside) return
       first = max(walk%step, 1)
       scope = "a step"
     end if

@@ -3,27 +3,16 @@ module mpm_diagnostics
   use mpm_deck_card, only: deck_card_t, deck_field_t, deck_line_t, deck_t, parameter_index, &
                            physical_line
   use mpm_error, only: error_t, make_error
+  use mpm_source_excerpt, only: message_text, printable, source_place_t
   use mpm_text, only: integer_text
   implicit none
   private
-  public :: diagnostics_t, source_place_t, quoted
+  public :: diagnostics_t, quoted
   public :: error_at_keyword, error_at_parameter, error_at_field, error_at_place, error_in_file
   public :: warning_at_keyword, warning_at_parameter, warning_at_field
   public :: place_in_line, to_error, warnings_text
 
   integer, parameter :: max_kept = 200     !! messages kept; further ones are only counted
-  integer, parameter :: max_excerpt = 96   !! characters of a line that are shown
-  integer, parameter :: rank_other = 1000000 !! files that do not belong to the deck come last
-
-  !> Where a message points to.
-  type :: source_place_t
-    integer :: rank = rank_other       !! order of the file: its index in the deck
-    character(:), allocatable :: path  !! file
-    integer :: line = 0                !! line in the file, 0 = the file as a whole
-    integer :: first = 1               !! columns of the token
-    integer :: last = 1
-    character(:), allocatable :: text  !! the line
-  end type source_place_t
 
   !> One message.
   type :: diagnostic_t
@@ -243,7 +232,7 @@ contains
     new%column = place%first
     new%is_error = is_error
     new%path = place%path
-    new%text = formatted(place, is_error, message, hint)
+    new%text = message_text(place, is_error, message, hint)
     if (.not. allocated(diag%message)) allocate (diag%message(max_kept))
     at = diag%n + 1
     do i = diag%n, 1, -1
@@ -275,89 +264,6 @@ contains
       comes_before = a%column < b%column
     end if
   end function comes_before
-
-  !> Complete text of a message: where, what, the line and a caret below the token.
-  pure function formatted(place, is_error, message, hint) result(text)
-    type(source_place_t), intent(in)   :: place    !! what to point at
-    logical, intent(in)                :: is_error !! .false.: a warning
-    character(*), intent(in)           :: message  !! what is wrong and what was expected
-    character(*), intent(in), optional :: hint     !! text behind the caret
-    character(:), allocatable :: text, pointer_line
-    character(6) :: number
-    integer :: cut, width
-
-    text = place%path//":"
-    if (place%line > 0) text = text//integer_text(place%line)//":"//integer_text(screen_column(place))//":"
-    text = text//trim(merge(" error:  ", " warning:", is_error))//" "//message
-    if (place%line == 0 .or. len_trim(place%text) == 0) then
-      return
-    end if
-    write (number, "(i5,1x)") place%line
-    cut = 0
-    if (place%last > max_excerpt) cut = max(0, place%first - max_excerpt/2)
-    width = min(max(1, place%last - place%first + 1), max_excerpt + cut - place%first + 1)
-    pointer_line = blanks_below(place%text(cut + 1:min(len(place%text), place%first - 1)))
-    pointer_line = pointer_line//"^"//repeat("~", max(width, 1) - 1)
-    if (cut > 0) pointer_line = "   "//pointer_line
-    if (present(hint)) pointer_line = trim(pointer_line//" "//hint)
-    text = text//new_line("a")//number//"| "//excerpt(place%text, cut) &
-           //new_line("a")//"      | "//pointer_line
-  end function formatted
-
-  !> Column of the token on the screen: a character of several bytes counts once.
-  pure integer function screen_column(place)
-    type(source_place_t), intent(in) :: place !! what is pointed at
-    integer :: i
-
-    screen_column = place%first
-    if (.not. allocated(place%text)) return
-    do i = 1, min(place%first - 1, len(place%text))
-      if (iand(ichar(place%text(i:i)), 192) == 128) screen_column = screen_column - 1
-    end do
-  end function screen_column
-
-  !> The part of a line that is shown, without control characters.
-  pure function excerpt(line, cut) result(part)
-    character(*), intent(in)  :: line !! a line of a file
-    integer, intent(in)       :: cut  !! characters left out at the start
-    character(:), allocatable :: part
-    integer :: last
-
-    last = len_trim(line)
-    if (last > cut + max_excerpt) last = cut + max_excerpt
-    part = printable(line(cut + 1:last))
-    if (cut > 0) part = "..."//part
-    if (last < len_trim(line)) part = part//"..."
-  end function excerpt
-
-  !> Blanks as wide as a text on the screen: tabs stay, the later bytes of a character vanish.
-  pure function blanks_below(text) result(blanks)
-    character(*), intent(in)  :: text !! a part of a line
-    character(:), allocatable :: blanks
-    integer :: i
-
-    blanks = ""
-    do i = 1, len(text)
-      if (text(i:i) == achar(9)) then
-        blanks = blanks//achar(9)
-      else if (iand(ichar(text(i:i)), 192) /= 128) then
-        blanks = blanks//" "
-      end if
-    end do
-  end function blanks_below
-
-  !> A text with control characters, except tabs, replaced by question marks.
-  pure function printable(text) result(clean)
-    character(*), intent(in) :: text !! any bytes
-    character(len(text))     :: clean
-    integer :: i
-
-    clean = text
-    do i = 1, len(text)
-      if ((ichar(text(i:i)) < 32 .and. text(i:i) /= achar(9)) .or. ichar(text(i:i)) == 127) &
-        clean(i:i) = "?"
-    end do
-  end function printable
 
   !> A user's text in single quotes, for a message: printable and not longer than 40 characters.
   pure function quoted(text) result(shown)
