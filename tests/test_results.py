@@ -147,7 +147,8 @@ def test_removed_points_leave_the_series(run_tessera):
     series = Series(run.folder / "job.vtkhdf")
     steps = [series.at(when) for when in series.times]
     counts = [step.n_points for step in steps]
-    assert counts[0] == 96 and counts[-1] < counts[0]
+    assert counts[0] == 96
+    assert counts[-1] < counts[0]
     for step in steps:
         assert step.n_cells == step.n_points == len(set(step["ID"]))
         start = steps[0].points[step["ID"] - 1]
@@ -236,7 +237,9 @@ def test_missed_expectation_ends_with_code_7(run_tessera):
     exact = 1000 * np.log(1.06) / 1.06
     log = run.read("job.log")
     line = bar(expect=EXPECT).splitlines().index("frozen, 1.0, 0.01") + 1
-    verdict = f"EXPECT job.inp:{line} SUM RF1[X1] at 0.6: frozen 1 +- 0.01, found {exact:.4f}: FAILED"
+    verdict = (
+        f"EXPECT job.inp:{line} SUM RF1[X1] at 0.6: frozen 1 +- 0.01, found {exact:.4f}: FAILED"
+    )
     assert verdict in log
     assert f"EXPECT job.inp:{line - 1} SUM RF1[X1] at 0.6: analytic 55 +- 0.55" in log
     assert "expectations: 2, failed 1" in log
@@ -248,7 +251,9 @@ def test_earlier_results_are_kept_without_force(run_tessera, bar_run):
     before = bar_run.read("job.log")
     again = run_tessera(bar())
     assert again.code == 8
-    assert "job.log' exists already: earlier results are only overwritten with --force" in again.stderr
+    assert (
+        "job.log' exists already: earlier results are only overwritten with --force" in again.stderr
+    )
     assert again.read("job.log") == before
     assert run_tessera(bar(), "--force").code == 0
 
@@ -256,7 +261,9 @@ def test_earlier_results_are_kept_without_force(run_tessera, bar_run):
 def test_progress_is_plain_lines_in_a_file(run_tessera):
     run = run_tessera(bar())
     lines = run.stderr.splitlines()
-    assert [line.split(" time")[0] for line in lines] == [f"step 1 increment {i}" for i in (1, 2, 3, 4)]
+    assert [line.split(" time")[0] for line in lines] == [
+        f"step 1 increment {i}" for i in (1, 2, 3, 4)
+    ]
     assert "\r" not in run.stderr
     assert run_tessera(bar(), "--force", "--quiet").stderr == ""
 
@@ -280,7 +287,8 @@ def test_killed_run_leaves_readable_files(tessera, tmp_path):
     with subprocess.Popen([str(tessera), "-q", "job.inp"], cwd=tmp_path) as process:
         status, deadline = tmp_path / "job.sta", time.monotonic() + 60
         while not status.exists() or status.read_text().count("\n") < 12:
-            assert process.poll() is None and time.monotonic() < deadline
+            assert process.poll() is None
+            assert time.monotonic() < deadline
             time.sleep(0.01)
         process.kill()
     assert process.returncode == -signal.SIGKILL

@@ -73,11 +73,12 @@ contains
   end subroutine evaluate_expectations
 
   !> Whether a time is that of an increment.
-  pure logical function same_time(expected, now)
+  pure function same_time(expected, now) result(same)
     real(dp), intent(in) :: expected !! total time
     real(dp), intent(in) :: now      !! total time
+    logical :: same
 
-    same_time = abs(expected - now) <= time_tolerance*max(abs(expected), abs(now))
+    same = abs(expected - now) <= time_tolerance*max(abs(expected), abs(now))
   end function same_time
 
   !> Largest difference that is accepted.
@@ -105,16 +106,17 @@ contains
   end function value_of_run
 
   !> Whether the items of an expectation are nodes: U without a set is that of the points.
-  pure logical function is_nodal(expected)
+  pure function is_nodal(expected) result(nodal)
     type(expectation_t), intent(in) :: expected
+    logical :: nodal
 
     select case (expected%quantity)
     case ("RF", "CF")
-      is_nodal = .true.
+      nodal = .true.
     case ("U")
-      is_nodal = expected%of_nodes .and. allocated(expected%item)
+      nodal = expected%of_nodes .and. allocated(expected%item)
     case default
-      is_nodal = .false.
+      nodal = .false.
     end select
   end function is_nodal
 
@@ -153,8 +155,7 @@ contains
     integer :: n
 
     n = size(values)
-    value = huge(value)
-    if (statistic == "SUM") value = sum(values)
+    value = merge(0.0_dp, huge(value), statistic == "SUM")
     if (n == 0) return
     select case (statistic)
     case ("MIN")
@@ -165,14 +166,17 @@ contains
       value = sqrt(sum((values - sum(values)/n)**2)/n)
     case ("MEAN")
       value = sum(values)/n
+    case default
+      value = sum(values)
     end select
   end function statistic_of
 
   !> Expectations that were not met or whose time was never reached.
-  pure integer function n_failed_expectations(verdicts)
+  pure function n_failed_expectations(verdicts) result(n)
     type(verdict_t), intent(in) :: verdicts(:) !! at the end of the run
+    integer :: n
 
-    n_failed_expectations = count(.not. verdicts%met)
+    n = count(.not. verdicts%met)
   end function n_failed_expectations
 
   !> One line about an expectation, with what was expected and what was found.

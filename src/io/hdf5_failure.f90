@@ -33,6 +33,7 @@ module mpm_hdf5_failure
     function h5_walk_errors(stack, direction, visit, finding) bind(c, name="H5Ewalk2") &
       result(status)
       import :: c_funptr, c_int, c_int64_t, c_ptr
+      implicit none
       integer(c_int64_t), value :: stack
       integer(c_int), value :: direction
       type(c_funptr), value :: visit
@@ -43,6 +44,7 @@ module mpm_hdf5_failure
     !> Length of a C string.
     pure function c_length(text) bind(c, name="strlen") result(length)
       import :: c_ptr, c_size_t
+      implicit none
       type(c_ptr), value :: text
       integer(c_size_t) :: length
     end function c_length

@@ -3,6 +3,7 @@
 !! Rows of a chunk that is written once are never touched again, and chunks without compression
 !! keep their place: a reader finds all rows of the last flush also after a kill of the program.
 !! Every procedure returns at once when `error` is set already.
+! allow(assumed-size)
 module mpm_hdf5_series
   use, intrinsic :: iso_c_binding, only: c_loc
   use hdf5, only: h5dclose_f, h5dcreate_f, h5dget_space_f, h5dset_extent_f, h5dwrite_f, &

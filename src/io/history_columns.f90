@@ -134,7 +134,7 @@ contains
     integer, intent(in) :: node(:)         !! nodes
     real(dp), allocatable :: values(:)     !! (size(node))
 
-    allocate (values(size(node)), source=0.0_dp)
+    allocate (values(size(node)))
     select case (quantity)
     case ("RF")
       values(:) = state%reaction(component, node)
@@ -142,6 +142,8 @@ contains
       values(:) = state%applied(component, node)
     case ("U")
       values(:) = state%node_u(component, node)
+    case default
+      values(:) = 0.0_dp
     end select
   end function nodal_values
 

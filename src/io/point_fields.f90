@@ -100,7 +100,6 @@ contains
     integer, intent(in) :: p               !! index of the point
     real(dp) :: value                      !! 0 for an unknown name
 
-    value = 0.0_dp
     select case (name)
     case ("PEEQ")
       value = points%state%hardening(1, p)
@@ -119,9 +118,12 @@ contains
     case ("ELEMENT")
       value = real(points%element(p), dp)
     case ("PATCH")
+      value = 0.0_dp
       if (points%element(p) > 0) value = real(patches%of_element(points%element(p)), dp)
     case ("ID")
       value = real(points%id(p), dp)
+    case default
+      value = 0.0_dp
     end select
   end function scalar_value
 

@@ -17,6 +17,7 @@ module mpm_progress
     !> Whether a file descriptor is a terminal.
     function is_terminal(descriptor) bind(c, name="isatty") result(yes)
       import :: c_int
+      implicit none
       integer(c_int), value :: descriptor
       integer(c_int) :: yes
     end function is_terminal
@@ -25,26 +26,33 @@ module mpm_progress
 contains
 
   !> Shows where the run is: one line that is rewritten on a terminal, else a line per call.
+  !! A terminal that went away is no reason to stop.
   subroutine show_progress(state, seconds_left)
     type(run_state_t), intent(in) :: state   !! after an attempt
     real(dp), intent(in) :: seconds_left     !! estimate [s]
     character(width) :: line
+    character(width) :: reason
     integer :: status
 
     line = progress_line(state, seconds_left)
     if (is_terminal(stderr_descriptor) /= 0_c_int) then
-      write (error_unit, "(a)", advance="no", iostat=status) carriage_return//line
-      flush (error_unit, iostat=status)
+      write (error_unit, "(a)", advance="no", iostat=status, iomsg=reason) &
+        carriage_return//line
+      if (status == 0) flush (error_unit, iostat=status, iomsg=reason)
     else
-      write (error_unit, "(a)", iostat=status) trim(line)
+      write (error_unit, "(a)", iostat=status, iomsg=reason) trim(line)
     end if
+    if (status /= 0) return
   end subroutine show_progress
 
   !> Leaves the line that is rewritten.
   subroutine end_progress()
+    character(width) :: reason
     integer :: status
 
-    if (is_terminal(stderr_descriptor) /= 0_c_int) write (error_unit, "(a)", iostat=status) ""
+    if (is_terminal(stderr_descriptor) == 0_c_int) return
+    write (error_unit, "(a)", iostat=status, iomsg=reason) ""
+    if (status /= 0) return
   end subroutine end_progress
 
   !> What is shown.

@@ -1,4 +1,5 @@
 !> Where the results of a job go.
+! allow(assumed-size)
 module mpm_result_paths
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
   use mpm_error, only: error_t, exit_file, make_error
@@ -19,6 +20,7 @@ module mpm_result_paths
     !> Makes one folder; -1 when it is there already or cannot be made.
     function c_mkdir(path, mode) bind(c, name="mkdir") result(status)
       import :: c_char, c_int
+      implicit none
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int), value :: mode
       integer(c_int) :: status

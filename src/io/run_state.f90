@@ -1,7 +1,7 @@
 !> What every writer is told: about the run as a whole, and after each increment.
 module mpm_run_state
-  use mpm_build_info, only: compiler, compiler_flags, git_revision, hdf5_version, metis_version, &
-                            umfpack_version, version
+  use mpm_build_info, only: build_compiler => compiler, build_version => version, compiler_flags, &
+                            git_revision, hdf5_version, metis_version, umfpack_version
   use mpm_kinds, only: dp
   use mpm_model, only: model_t
   implicit none
@@ -106,9 +106,9 @@ contains
     info%deck_text = deck_text
     info%n_threads = n_threads
     info%quiet = quiet
-    info%version = version
+    info%version = build_version
     info%git = git_revision
-    info%compiler = compiler//" "//compiler_flags
+    info%compiler = build_compiler//" "//compiler_flags
     info%libraries = "HDF5 "//hdf5_version//", UMFPACK "//umfpack_version//", METIS "//metis_version
     call date_and_time(date, time, zone)
     info%started = date(1:4)//"-"//date(5:6)//"-"//date(7:8)//"T"//time(1:2)//":"//time(3:4) &

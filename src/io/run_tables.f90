@@ -109,6 +109,8 @@ contains
         layout%kind = kind_int64
       case ("centre")
         layout%n_columns = 3
+      case default
+        layout%kind = kind_float64
       end select
       call create_series(series(i), file, "/tessera/ledger/"//trim(ledger_columns(i)), layout, &
                          error)

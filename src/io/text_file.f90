@@ -1,6 +1,7 @@
 !> Text files that are complete up to the last line whatever happens to the program.
 !!
 !! Through the C library: the flush of Fortran's run-time library does not report a full disk.
+! allow(assumed-size)
 module mpm_text_file
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_int, &
                                          c_intptr_t, c_null_char, c_null_ptr, c_ptr, c_size_t
@@ -23,6 +24,7 @@ module mpm_text_file
     !> Opens a file; null if it cannot be opened.
     function c_open(path, mode) bind(c, name="fopen") result(stream)
       import :: c_char, c_ptr
+      implicit none
       character(kind=c_char), intent(in) :: path(*), mode(*)
       type(c_ptr) :: stream
     end function c_open
@@ -30,6 +32,7 @@ module mpm_text_file
     !> Writes bytes; returns how many of them.
     function c_write(bytes, size, n, stream) bind(c, name="fwrite") result(n_written)
       import :: c_char, c_ptr, c_size_t
+      implicit none
       character(kind=c_char), intent(in) :: bytes(*)
       integer(c_size_t), value :: size, n
       type(c_ptr), value :: stream
@@ -39,6 +42,7 @@ module mpm_text_file
     !> Hands what was written to the operating system; not 0 if that fails.
     function c_flush(stream) bind(c, name="fflush") result(status)
       import :: c_int, c_ptr
+      implicit none
       type(c_ptr), value :: stream
       integer(c_int) :: status
     end function c_flush
@@ -46,6 +50,7 @@ module mpm_text_file
     !> Closes a file; not 0 if that fails.
     function c_close(stream) bind(c, name="fclose") result(status)
       import :: c_int, c_ptr
+      implicit none
       type(c_ptr), value :: stream
       integer(c_int) :: status
     end function c_close
@@ -53,6 +58,7 @@ module mpm_text_file
     !> Sets what happens at a signal.
     function c_signal(number, action) bind(c, name="signal") result(previous)
       import :: c_int, c_intptr_t
+      implicit none
       integer(c_int), value :: number
       integer(c_intptr_t), value :: action
       integer(c_intptr_t) :: previous
@@ -61,12 +67,14 @@ module mpm_text_file
     !> Where the number of the last error is.
     function c_error_number() bind(c, name="__errno_location") result(address)
       import :: c_ptr
+      implicit none
       type(c_ptr) :: address
     end function c_error_number
 
     !> Text of an error number.
     function c_error_text(number) bind(c, name="strerror") result(text)
       import :: c_int, c_ptr
+      implicit none
       integer(c_int), value :: number
       type(c_ptr) :: text
     end function c_error_text
@@ -74,6 +82,7 @@ module mpm_text_file
     !> Length of a C string.
     pure function c_length(text) bind(c, name="strlen") result(length)
       import :: c_ptr, c_size_t
+      implicit none
       type(c_ptr), value :: text
       integer(c_size_t) :: length
     end function c_length
