@@ -144,6 +144,7 @@ contains
         call add_planes(box%z, deck, context, i_card, i)
       end select
     end do
+    if (context%diag%n_errors > n_before) return
     do i = 1, box%n_dim
       if (size(planes_of(box, i)) == 0) call fault(context, deck, at_card(i_card), &
         & "no cells in direction "//axis(i)//": expected a line '"//axis(i) &
