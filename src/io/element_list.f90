@@ -8,7 +8,7 @@ module mpm_element_list
   use mpm_label_table, only: find_label
   use mpm_labelled_mesh, only: body_element, carrier_element, edge_element, find_set, &
     & labelled_mesh_t
-  use mpm_text, only: integer_text
+  use mpm_text, only: integer_text, same_name
   implicit none
   private
   public :: element_list_t, add_element, add_element_range, add_named_elements
@@ -102,7 +102,7 @@ contains
         call append_items(list%body, parent%element_set(i_body)%item)
       else if (i_carrier > 0) then
         call append_items(list%carrier, parent%carrier_set(i_carrier)%item)
-      else if (find_set(parent%node_set, name) > 0) then
+      else if (find_set(parent%node_set, name) > 0 .or. is_node_set_of_deck(deck, name)) then
         call fault(context, deck, place, quoted(name)//" is the wrong kind of set, a node set: " &
                    //"expected an element set")
       else
@@ -112,6 +112,20 @@ contains
       end if
     end associate
   end subroutine add_named_elements
+
+  !> Whether a *NSET card defines a name; these are built after the element sets.
+  pure logical function is_node_set_of_deck(deck, name)
+    type(deck_t), intent(in) :: deck !! the deck
+    character(*), intent(in) :: name !! any case
+    integer :: i
+
+    is_node_set_of_deck = .true.
+    do i = 1, size(deck%card)
+      if (deck%card(i)%keyword /= "NSET") cycle
+      if (same_name(parameter_text(deck%card(i), "NSET", ""), name)) return
+    end do
+    is_node_set_of_deck = .false.
+  end function is_node_set_of_deck
 
   !> A set of this name came with the mesh.
   subroutine fault_of_mesh_set(deck, context, i_card, parameter)
