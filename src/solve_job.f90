@@ -262,7 +262,6 @@ contains
     type(system_t), intent(in)       :: system
     type(body_t), intent(in)         :: body
     type(model_t), intent(in)        :: model
-    integer :: e
 
     state%applied = system%f_ext
     state%reaction = merge(system%f_int - system%f_ext, 0.0_dp, system%dofs%fixed)
@@ -270,12 +269,35 @@ contains
     state%node_u = state%node_u + system%u
     state%delta_j = 1.0_dp
     state%delta_j(system%element) = 1.0_dp + system%kinematics%delta_j_m1(system%element)
-    state%delta_j_patch = 1.0_dp
-    do e = 1, body%mesh%n_el
-      if (system%active(e)) state%delta_j_patch(model%patches%of_element(e)) = &
-        1.0_dp + system%kinematics%delta_j_bar_m1(e)
-    end do
+    state%delta_j_patch = patch_means(state%delta_j, system%element, body%mesh%volume, &
+                                      model%patches%of_element, model%patches%n)
   end subroutine note_equilibrium
+
+  !> Mean volume change of the patches of the deck, also with the standard method, which does not
+  !! use it. Source: theory.md (4).
+  pure function patch_means(delta_j, element, volume, of_element, n_patch) result(mean)
+    real(dp), intent(in) :: delta_j(:)    !! (n_el)  det dF [-]
+    integer, intent(in)  :: element(:)    !! active elements
+    real(dp), intent(in) :: volume(:)     !! (n_el)  at the start of the increment
+    integer, intent(in)  :: of_element(:) !! (n_el)  patch of each element
+    integer, intent(in)  :: n_patch
+    real(dp) :: mean(n_patch)             !! 1 for an empty patch [-]
+    real(dp) :: total(n_patch)
+    integer :: i, e
+
+    mean = 0.0_dp
+    total = 0.0_dp
+    do i = 1, size(element)
+      e = element(i)
+      mean(of_element(e)) = mean(of_element(e)) + volume(e)*delta_j(e)
+      total(of_element(e)) = total(of_element(e)) + volume(e)
+    end do
+    where (total > 0.0_dp)
+      mean = mean/total
+    elsewhere
+      mean = 1.0_dp
+    end where
+  end function patch_means
 
   !> Times and counts after the acceptance.
   subroutine note_location(state, schedule, location)

@@ -119,6 +119,25 @@ def checkerboard(results, when):
     return np.sqrt(np.mean((of_element - of_patch[patch_of]) ** 2))
 
 
+@pytest.mark.parametrize("example", ["footing", "stretch"])
+def test_two_threads_give_the_same_bits(example, request, tessera_release, tmp_path):
+    one = request.getfixturevalue(example)
+    command = [tessera_release, "--compare", "standard,fbar", "-q", "-t", "2", "-o", tmp_path]
+    run = subprocess.run(
+        [*map(str, command), f"{example}.inp"], cwd=ROOT / "input" / example, check=False
+    )
+    assert run.returncode == 0
+    for method in METHODS:
+        two = Results(tmp_path, f"{example}_{method}")
+        for name, column in one[method].history.items():
+            np.testing.assert_array_equal(two.history[name], column, err_msg=name)
+        for name in ("step", "increment", "attempt", "iteration", "residual"):
+            np.testing.assert_array_equal(two.iterations[name], one[method].iterations[name])
+        last = one[method].history["time"][-1]
+        for name in ("S", "TAU", "LE", "PEEQ"):
+            np.testing.assert_array_equal(two.field(name, last), one[method].field(name, last))
+
+
 # --- footing -------------------------------------------------------------------------------------
 
 

@@ -110,7 +110,8 @@ contains
       text = text//", elements per patch: "//integer_text(minval(sizes))//" to " &
              //integer_text(maxval(sizes))//", mean "//real_text(sum(sizes)/real(size(sizes), dp))
     end if
-    text = text//line_end
+    ! A model with a free rigid-body mode has been refused by mpm_support_check.
+    text = text//line_end//"rigid-body modes left free: none"//line_end
   end function mesh_text
 
   !> Free unknowns per volume that the material wants to keep, with and without patches.
