@@ -3,7 +3,7 @@ module mpm_gmsh_elements
   use mpm_gmsh_mesh, only: gmsh_block_t, gmsh_mesh_t, max_nodes, type_dimension, &
     & type_name, type_nodes
   use mpm_gmsh_scanner, only: end_line, fail_at_line, fail_at_token, failed, gmsh_scanner_t, &
-    & next_count, next_integer, next_line, read_count
+    & next_count, next_integer, next_line, number_failure, read_count
   use mpm_label_table, only: build_label_table, find_label, label_table_t
   use mpm_text, only: integer_text
   implicit none
@@ -21,8 +21,8 @@ contains
     call read_count(scanner, n, "the number of elements")
     call allocate_elements(raw, n)
     do i = 1, n
-      call next_line(scanner, element_expected(i, n))
-      call next_integer(scanner, raw%el_tag(i), element_expected(i, n))
+      call next_line(scanner, "an element")
+      call next_integer(scanner, raw%el_tag(i), "the number of an element")
       call next_integer(scanner, raw%el_type(i), "the type of an element")
       call check_type(scanner, raw%el_type(i))
       call next_count(scanner, n_tag, "the number of tags of an element")
@@ -32,6 +32,7 @@ contains
         if (j == 1) physical = abs(tag)
       end do
       call read_element_nodes(raw, scanner, i)
+      if (failed(scanner)) call number_failure(scanner, "an element", "element", i, n)
       if (failed(scanner)) return
       call note_block(raw, i, type_dimension(raw%el_type(i)), physical)
     end do
@@ -113,9 +114,10 @@ contains
     last = first - 1 + n
     raw%el_type(first:last) = el_type
     do i = first, last
-      call next_line(scanner, element_expected(i, raw%n_el))
-      call next_integer(scanner, raw%el_tag(i), element_expected(i, raw%n_el))
+      call next_line(scanner, "an element")
+      call next_integer(scanner, raw%el_tag(i), "the number of an element")
       call read_element_nodes(raw, scanner, i)
+      if (failed(scanner)) call number_failure(scanner, "an element", "element", i, raw%n_el)
       if (failed(scanner)) return
     end do
   end subroutine read_element_block
@@ -135,14 +137,6 @@ contains
     end do
     allocate (group(0))
   end function groups_of_entity
-
-  !> What is expected where the number of an element should be.
-  pure function element_expected(i, n) result(expected)
-    integer, intent(in) :: i, n           !! element i of n
-    character(:), allocatable :: expected !! for messages
-
-    expected = "the number of element "//integer_text(i)//" of "//integer_text(n)
-  end function element_expected
 
   !> Storage for elements.
   subroutine allocate_elements(raw, n)
@@ -173,7 +167,7 @@ contains
 
     n = type_nodes(raw%el_type(i))
     do j = 1, n
-      call next_integer(scanner, tag, "a node of the element")
+      call next_integer(scanner, tag, "a node of an element")
       if (failed(scanner)) return
       raw%node(j, i) = find_label(raw%node_table, tag)
       if (raw%node(j, i) == 0) then
@@ -183,7 +177,7 @@ contains
       end if
     end do
     raw%el_line(i) = scanner%line
-    call end_line(scanner, integer_text(n)//" nodes of a "//type_name(raw%el_type(i)))
+    call end_line(scanner, "no more nodes in an element")
   end subroutine read_element_nodes
 
   !> Element numbers must differ.

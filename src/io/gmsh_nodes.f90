@@ -2,7 +2,7 @@
 module mpm_gmsh_nodes
   use mpm_gmsh_mesh, only: gmsh_mesh_t
   use mpm_gmsh_scanner, only: end_line, fail_at_line, fail_at_token, failed, gmsh_scanner_t, &
-    & next_count, next_integer, next_line, next_real, read_count, rest_of_line
+    & next_count, next_integer, next_line, next_real, number_failure, read_count, rest_of_line
   use mpm_label_table, only: build_label_table
   use mpm_text, only: integer_text
   implicit none
@@ -20,10 +20,11 @@ contains
     call read_count(scanner, n, "the number of nodes")
     call allocate_nodes(raw, n)
     do i = 1, n
-      call next_line(scanner, "node "//integer_text(i)//" of "//integer_text(n))
-      call next_integer(scanner, raw%node_tag(i), node_expected(i, n))
+      call next_line(scanner, "a node")
+      call next_integer(scanner, raw%node_tag(i), "the number of a node")
       call read_coordinates(raw, scanner, i)
       call end_line(scanner, "number, x, y and z of a node")
+      if (failed(scanner)) call number_failure(scanner, "a node", "node", i, n)
       if (failed(scanner)) return
     end do
     call check_nodes(raw, scanner)
@@ -75,27 +76,21 @@ contains
     if (failed(scanner)) return
     last = first - 1 + n
     do i = first, last
-      call next_line(scanner, node_expected(i, raw%n_node))
-      call next_integer(scanner, raw%node_tag(i), node_expected(i, raw%n_node))
+      call next_line(scanner, "the number of a node")
+      call next_integer(scanner, raw%node_tag(i), "the number of a node")
       call end_line(scanner, "only the number of a node")
+      if (failed(scanner)) call number_failure(scanner, "a node", "node", i, raw%n_node)
       if (failed(scanner)) return
     end do
     do i = first, last
-      call next_line(scanner, "coordinates of node "//integer_text(raw%node_tag(i)))
+      call next_line(scanner, "coordinates of a node")
       call read_coordinates(raw, scanner, i)
       if (parametric == 0) call end_line(scanner, "x, y and z of a node")
       if (parametric /= 0) call rest_of_line(scanner, rest)
+      if (failed(scanner)) call number_failure(scanner, "a node", "node", i, raw%n_node)
       if (failed(scanner)) return
     end do
   end subroutine read_node_block
-
-  !> What is expected where the number of a node should be.
-  pure function node_expected(i, n) result(expected)
-    integer, intent(in) :: i, n           !! node i of n
-    character(:), allocatable :: expected !! for messages
-
-    expected = "the number of node "//integer_text(i)//" of "//integer_text(n)
-  end function node_expected
 
   !> Storage for nodes.
   subroutine allocate_nodes(raw, n)

@@ -6,7 +6,7 @@ module mpm_gmsh_scanner
   private
   public :: gmsh_scanner_t, load_text, failed, fail_at_token, fail_at_line, fail_at_end
   public :: next_line, next_integer, next_real, next_word, end_line, rest_of_line, line_text
-  public :: next_count, read_count
+  public :: next_count, number_failure, read_count
 
   character(*), parameter :: blanks = " "//achar(9)//achar(13)
 
@@ -87,6 +87,21 @@ contains
     scanner%error_column = 1
   end subroutine fail_at_line
 
+  !> Says which of several items was expected, when the last failure speaks of any of them.
+  pure subroutine number_failure(scanner, any_item, item, i, n)
+    type(gmsh_scanner_t), intent(inout) :: scanner !! message is changed
+    character(*), intent(in) :: any_item           !! words that end the message: a node
+    character(*), intent(in) :: item               !! node
+    integer, intent(in) :: i, n                    !! item i of n
+    integer :: first
+
+    first = len(scanner%message) - len(any_item) + 1
+    if (first < 1) return
+    if (scanner%message(first:) /= any_item) return
+    scanner%message = scanner%message(:first - 1)//item//" "//integer_text(i)//" of " &
+                      //integer_text(n)
+  end subroutine number_failure
+
   !> Failure because the file ends: points behind the last line.
   pure subroutine fail_at_end(scanner, expected)
     type(gmsh_scanner_t), intent(inout) :: scanner !! takes the failure
@@ -103,9 +118,8 @@ contains
   !> Goes to the next line that is not blank.
   pure subroutine next_line(scanner, expected, found)
     type(gmsh_scanner_t), intent(inout) :: scanner !! at the start of the line afterwards
-    character(*), intent(in) :: expected           !! what the line should hold, for the message at the end of the file
-    logical, intent(out), optional :: found        !! .false. at the end of the file, which then is no failure
-    integer(ip) :: length
+    character(*), intent(in) :: expected           !! what the line should hold, for the message
+    logical, intent(out), optional :: found        !! .false. at the end of the file: no failure
 
     if (present(found)) found = .false.
     if (failed(scanner)) return
@@ -114,10 +128,7 @@ contains
       scanner%line = scanner%line + 1
       scanner%line_first = scanner%at
       scanner%word_first = scanner%at
-      length = index(scanner%text(scanner%at:min(scanner%at + 4095, len(scanner%text, ip))), &
-                     achar(10)) - 1
-      if (length < 0) length = length_of_long_line(scanner)
-      scanner%line_last = scanner%at + length - 1
+      scanner%line_last = end_of_line(scanner) - 1
       if (verify(scanner%text(scanner%at:scanner%line_last), blanks) > 0) then
         if (present(found)) found = .true.
         return
@@ -127,14 +138,15 @@ contains
     if (.not. present(found)) call fail_at_end(scanner, expected)
   end subroutine next_line
 
-  !> Characters up to the line end or the end of the file.
-  pure function length_of_long_line(scanner) result(length)
+  !> Position of the next line end, one behind the text if there is none.
+  pure function end_of_line(scanner) result(at)
     type(gmsh_scanner_t), intent(in) :: scanner !! at the start of a line
-    integer(ip) :: length                       !! without the line end
+    integer(ip) :: at                           !! position in the text
 
-    length = index(scanner%text(scanner%at:), achar(10), kind=ip) - 1
-    if (length < 0) length = len(scanner%text, ip) - scanner%at + 1
-  end function length_of_long_line
+    do at = scanner%at, len(scanner%text, ip)
+      if (scanner%text(at:at) == achar(10)) return
+    end do
+  end function end_of_line
 
   !> Finds the next word of the line; its last character is at - 1.
   pure subroutine next_word(scanner, expected)
@@ -164,7 +176,7 @@ contains
     character(1), intent(in) :: character_1 !! one character
     logical :: is_blank                     !! .true. for blank, tab, carriage return
 
-    is_blank = index(blanks, character_1) > 0
+    is_blank = character_1 == " " .or. character_1 == achar(9) .or. character_1 == achar(13)
   end function is_blank
 
   !> The next word as an integer.
