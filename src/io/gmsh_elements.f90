@@ -21,7 +21,7 @@ contains
     call read_count(scanner, n, "the number of elements")
     call allocate_elements(raw, n)
     do i = 1, n
-      call next_line(scanner, "an element")
+      call next_line(scanner, "the number of an element")
       call next_integer(scanner, raw%el_tag(i), "the number of an element")
       call next_integer(scanner, raw%el_type(i), "the type of an element")
       call check_type(scanner, raw%el_type(i))
@@ -32,8 +32,10 @@ contains
         if (j == 1) physical = abs(tag)
       end do
       call read_element_nodes(raw, scanner, i)
-      if (failed(scanner)) call number_failure(scanner, "an element", "element", i, n)
-      if (failed(scanner)) return
+      if (failed(scanner)) then
+        call number_failure(scanner, "the number of an element", element_expected(i, n))
+        return
+      end if
       call note_block(raw, i, type_dimension(raw%el_type(i)), physical)
     end do
     raw%block = raw%block(:count(raw%block%first > 0))
@@ -114,11 +116,13 @@ contains
     last = first - 1 + n
     raw%el_type(first:last) = el_type
     do i = first, last
-      call next_line(scanner, "an element")
+      call next_line(scanner, "the number of an element")
       call next_integer(scanner, raw%el_tag(i), "the number of an element")
       call read_element_nodes(raw, scanner, i)
-      if (failed(scanner)) call number_failure(scanner, "an element", "element", i, raw%n_el)
-      if (failed(scanner)) return
+      if (failed(scanner)) then
+        call number_failure(scanner, "the number of an element", element_expected(i, raw%n_el))
+        return
+      end if
     end do
   end subroutine read_element_block
 
@@ -137,6 +141,14 @@ contains
     end do
     allocate (group(0))
   end function groups_of_entity
+
+  !> What is expected where the number of an element should be.
+  pure function element_expected(i, n) result(expected)
+    integer, intent(in) :: i, n           !! element i of n
+    character(:), allocatable :: expected !! for messages
+
+    expected = "the number of element "//integer_text(i)//" of "//integer_text(n)
+  end function element_expected
 
   !> Storage for elements.
   subroutine allocate_elements(raw, n)
@@ -167,7 +179,7 @@ contains
 
     n = type_nodes(raw%el_type(i))
     do j = 1, n
-      call next_integer(scanner, tag, "a node of an element")
+      call next_integer(scanner, tag, "a node of the element")
       if (failed(scanner)) return
       raw%node(j, i) = find_label(raw%node_table, tag)
       if (raw%node(j, i) == 0) then
@@ -177,7 +189,9 @@ contains
       end if
     end do
     raw%el_line(i) = scanner%line
-    call end_line(scanner, "no more nodes in an element")
+    call end_line(scanner, "no more nodes")
+    if (failed(scanner)) call number_failure(scanner, "no more nodes", integer_text(n) &
+      & //" nodes of a "//type_name(raw%el_type(i)))
   end subroutine read_element_nodes
 
   !> Element numbers must differ.

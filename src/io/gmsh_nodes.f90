@@ -20,12 +20,16 @@ contains
     call read_count(scanner, n, "the number of nodes")
     call allocate_nodes(raw, n)
     do i = 1, n
-      call next_line(scanner, "a node")
+      call next_line(scanner, "another node")
       call next_integer(scanner, raw%node_tag(i), "the number of a node")
       call read_coordinates(raw, scanner, i)
       call end_line(scanner, "number, x, y and z of a node")
-      if (failed(scanner)) call number_failure(scanner, "a node", "node", i, n)
-      if (failed(scanner)) return
+      if (failed(scanner)) then
+        call number_failure(scanner, "the number of a node", node_expected(i, n))
+        call number_failure(scanner, "another node", "node "//integer_text(i)//" of " &
+                            //integer_text(n))
+        return
+      end if
     end do
     call check_nodes(raw, scanner)
   end subroutine read_nodes_22
@@ -79,18 +83,31 @@ contains
       call next_line(scanner, "the number of a node")
       call next_integer(scanner, raw%node_tag(i), "the number of a node")
       call end_line(scanner, "only the number of a node")
-      if (failed(scanner)) call number_failure(scanner, "a node", "node", i, raw%n_node)
-      if (failed(scanner)) return
+      if (failed(scanner)) then
+        call number_failure(scanner, "the number of a node", node_expected(i, raw%n_node))
+        return
+      end if
     end do
     do i = first, last
       call next_line(scanner, "coordinates of a node")
       call read_coordinates(raw, scanner, i)
       if (parametric == 0) call end_line(scanner, "x, y and z of a node")
       if (parametric /= 0) call rest_of_line(scanner, rest)
-      if (failed(scanner)) call number_failure(scanner, "a node", "node", i, raw%n_node)
-      if (failed(scanner)) return
+      if (failed(scanner)) then
+        call number_failure(scanner, "coordinates of a node", "coordinates of node " &
+                            //integer_text(raw%node_tag(i)))
+        return
+      end if
     end do
   end subroutine read_node_block
+
+  !> What is expected where the number of a node should be.
+  pure function node_expected(i, n) result(expected)
+    integer, intent(in) :: i, n           !! node i of n
+    character(:), allocatable :: expected !! for messages
+
+    expected = "the number of node "//integer_text(i)//" of "//integer_text(n)
+  end function node_expected
 
   !> Storage for nodes.
   subroutine allocate_nodes(raw, n)

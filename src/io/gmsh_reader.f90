@@ -14,7 +14,7 @@ module mpm_gmsh_reader
 
   !> Where the elements of the file went.
   type :: element_map_t
-    integer, allocatable :: new(:)  !! (n_el in the file) index of the element or carrier, 0 = dropped
+    integer, allocatable :: new(:)  !! (n_el in the file) element or carrier, 0 = dropped
     integer :: n_el = 0            !! elements of the body
     integer :: n_carrier = 0       !! surface carriers
     integer, allocatable :: node(:) !! (n_node in the file) index of the node, 0 if dropped

@@ -87,19 +87,17 @@ contains
     scanner%error_column = 1
   end subroutine fail_at_line
 
-  !> Says which of several items was expected, when the last failure speaks of any of them.
-  pure subroutine number_failure(scanner, any_item, item, i, n)
+  !> Puts the words for one item in the place of those for any, if the failure has them. Hot loops
+  !! say which item they expect only in this way, after a failure.
+  pure subroutine number_failure(scanner, any_item, item)
     type(gmsh_scanner_t), intent(inout) :: scanner !! message is changed
-    character(*), intent(in) :: any_item           !! words that end the message: a node
-    character(*), intent(in) :: item               !! node
-    integer, intent(in) :: i, n                    !! item i of n
+    character(*), intent(in) :: any_item           !! such as "the number of a node"
+    character(*), intent(in) :: item               !! such as "the number of node 3 of 7"
     integer :: first
 
-    first = len(scanner%message) - len(any_item) + 1
-    if (first < 1) return
-    if (scanner%message(first:) /= any_item) return
-    scanner%message = scanner%message(:first - 1)//item//" "//integer_text(i)//" of " &
-                      //integer_text(n)
+    first = index(scanner%message, any_item, back=.true.)
+    if (first > 0) scanner%message = scanner%message(:first - 1)//item &
+                                     //scanner%message(first + len(any_item):)
   end subroutine number_failure
 
   !> Failure because the file ends: points behind the last line.
