@@ -2,7 +2,8 @@
 module mpm_element_list
   use mpm_build_context, only: at_field, at_parameter, build_context_t, fault, is_element_set, &
     & name_hint, place_t, set_names, use_name
-  use mpm_deck_card, only: deck_t, field_count, field_integer, field_text, parameter_text
+  use mpm_deck_card, only: deck_t, field_count, field_integer, field_is_integer, field_text, &
+    & parameter_text
   use mpm_diagnostics, only: quoted
   use mpm_index_list, only: append_items, index_list_t
   use mpm_label_table, only: find_label
@@ -11,7 +12,7 @@ module mpm_element_list
   use mpm_text, only: integer_text, same_name
   implicit none
   private
-  public :: element_list_t, add_element, add_element_range, add_named_elements
+  public :: element_list_t, add_element_range, add_elements_of_field
   public :: fault_of_mesh_set, read_range
 
   !> Elements of a set, by kind.
@@ -22,6 +23,23 @@ module mpm_element_list
   end type element_list_t
 
 contains
+
+  !> Adds what a field names: an element by its number, or the elements of a set.
+  subroutine add_elements_of_field(list, mesh, deck, context, place)
+    type(element_list_t), intent(inout) :: list     !! more elements
+    type(labelled_mesh_t), intent(in) :: mesh       !! mesh with sets
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    type(place_t), intent(in) :: place              !! the field
+
+    associate (line => deck%card(place%card)%data(place%line))
+      if (field_is_integer(line, place%field)) then
+        call add_element(list, mesh, deck, context, place, field_integer(line, place%field))
+      else
+        call add_named_elements(list, mesh, deck, context, place)
+      end if
+    end associate
+  end subroutine add_elements_of_field
 
   !> Adds an element by its number.
   subroutine add_element(list, mesh, deck, context, place, label)

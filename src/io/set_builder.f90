@@ -5,7 +5,7 @@ module mpm_set_builder
   use mpm_deck_card, only: deck_t, field_count, field_integer, field_is_integer, field_text, &
     & has_parameter, parameter_text
   use mpm_diagnostics, only: quoted
-  use mpm_element_list, only: add_element, add_element_range, add_named_elements, element_list_t, &
+  use mpm_element_list, only: add_element_range, add_elements_of_field, element_list_t, &
     & fault_of_mesh_set, read_range
   use mpm_index_list, only: append_items, index_list_t, list_items
   use mpm_label_table, only: find_label
@@ -55,20 +55,13 @@ contains
       return
     end if
     do j = 1, size(deck%card(i_card)%data)
-      associate (line => deck%card(i_card)%data(j))
-        if (has_parameter(deck%card(i_card), "GENERATE")) then
-          call add_element_range(list, mesh, deck, context, [i_card, j])
-        else
-          do k = 1, field_count(line)
-            if (field_is_integer(line, k)) then
-              call add_element(list, mesh, deck, context, at_field(i_card, j, k), &
-                               field_integer(line, k))
-            else
-              call add_named_elements(list, mesh, deck, context, at_field(i_card, j, k))
-            end if
-          end do
-        end if
-      end associate
+      if (has_parameter(deck%card(i_card), "GENERATE")) then
+        call add_element_range(list, mesh, deck, context, [i_card, j])
+        cycle
+      end if
+      do k = 1, field_count(deck%card(i_card)%data(j))
+        call add_elements_of_field(list, mesh, deck, context, at_field(i_card, j, k))
+      end do
     end do
     if (context%diag%n_errors > n_before) then
       call add_set(mesh%parent%element_set, name, list_items(list%body))
@@ -123,23 +116,33 @@ contains
     if (has_parameter(deck%card(i_card), "ELSET")) call add_nodes_of_elements(list, mesh, deck, &
       & context, i_card)
     do j = 1, size(deck%card(i_card)%data)
-      associate (line => deck%card(i_card)%data(j))
-        if (has_parameter(deck%card(i_card), "GENERATE")) then
-          call add_node_range(list, mesh, deck, context, [i_card, j])
-        else
-          do k = 1, field_count(line)
-            if (field_is_integer(line, k)) then
-              call add_node(list, mesh, deck, context, at_field(i_card, j, k), &
-                            field_integer(line, k))
-            else
-              call add_named_nodes(list, mesh, deck, context, at_field(i_card, j, k))
-            end if
-          end do
-        end if
-      end associate
+      if (has_parameter(deck%card(i_card), "GENERATE")) then
+        call add_node_range(list, mesh, deck, context, [i_card, j])
+        cycle
+      end if
+      do k = 1, field_count(deck%card(i_card)%data(j))
+        call add_nodes_of_field(list, mesh, deck, context, at_field(i_card, j, k))
+      end do
     end do
     call add_set(mesh%parent%node_set, name, list_items(list))
   end subroutine build_node_set
+
+  !> Adds what a field names: a node by its number, or the nodes of a set.
+  subroutine add_nodes_of_field(list, mesh, deck, context, place)
+    type(index_list_t), intent(inout) :: list       !! more nodes
+    type(labelled_mesh_t), intent(in) :: mesh       !! mesh with sets
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    type(place_t), intent(in) :: place              !! the field
+
+    associate (line => deck%card(place%card)%data(place%line))
+      if (field_is_integer(line, place%field)) then
+        call add_node(list, mesh, deck, context, place, field_integer(line, place%field))
+      else
+        call add_named_nodes(list, mesh, deck, context, place)
+      end if
+    end associate
+  end subroutine add_nodes_of_field
 
   !> Adds a node by its number.
   subroutine add_node(list, mesh, deck, context, place, label)

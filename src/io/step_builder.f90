@@ -17,6 +17,12 @@ module mpm_step_builder
 
   real(dp), parameter :: smallest_part = 1.0e-5_dp !! default minimum of an increment over the period
 
+  !> What is in force; it carries over from step to step.
+  type :: conditions_t
+    type(boundary_state_t) :: boundary !! prescribed displacements
+    type(load_state_t) :: loads        !! loads
+  end type conditions_t
+
 contains
 
   !> Builds all steps.
@@ -24,8 +30,7 @@ contains
     type(model_t), intent(inout) :: model           !! with mesh, points, amplitudes; steps are set
     type(deck_t), intent(in) :: deck                !! the deck
     type(build_context_t), intent(inout) :: context !! takes errors
-    type(boundary_state_t) :: boundary
-    type(load_state_t) :: loads
+    type(conditions_t) :: conditions
     real(dp) :: time
     integer :: i, first, n
 
@@ -34,7 +39,7 @@ contains
       if (deck%card(i)%keyword == "STEP") n = n + 1
     end do
     allocate (model%step(n))
-    call open_boundary(boundary, model)
+    call open_boundary(conditions%boundary, model)
     n = 0
     first = 0
     time = 0.0_dp
@@ -44,20 +49,19 @@ contains
         first = i
       case ("END STEP")
         n = n + 1
-        call build_step(model, n, boundary, loads, deck, context, [first, i], time)
+        call build_step(model, n, conditions, deck, context, [first, i], time)
         first = 0
       case ("BOUNDARY")
-        if (first == 0) call fix_boundary(boundary, model, deck, context, i)
+        if (first == 0) call fix_boundary(conditions%boundary, model, deck, context, i)
       end select
     end do
   end subroutine build_steps
 
   !> Builds one step.
-  subroutine build_step(model, n, boundary, loads, deck, context, range, time)
+  subroutine build_step(model, n, conditions, deck, context, range, time)
     type(model_t), intent(inout) :: model             !! step n is set
     integer, intent(in) :: n                          !! number of the step
-    type(boundary_state_t), intent(inout) :: boundary !! what is prescribed
-    type(load_state_t), intent(inout) :: loads        !! loads in force
+    type(conditions_t), intent(inout) :: conditions   !! in force
     type(deck_t), intent(in) :: deck                  !! the deck
     type(build_context_t), intent(inout) :: context   !! takes errors
     integer, intent(in) :: range(2)                   !! (2) cards *STEP and *END STEP
@@ -66,22 +70,24 @@ contains
     integer :: i
 
     call open_step(step, model, n, deck, range(1))
-    call begin_boundary_step(boundary, deck, context, range(1), range(2))
-    call begin_load_step(loads, deck, context, range(1), range(2))
-    do i = range(1), range(2)
-      select case (deck%card(i)%keyword)
-      case ("STATIC")
-        call build_schedule(step, deck, context, i)
-      case ("CONTROLS")
-        call build_controls(step, deck, i)
-      case ("BOUNDARY")
-        call add_boundary(boundary, model, deck, context, i)
-      case ("CLOAD", "DLOAD", "DSLOAD")
-        call add_loads(loads, boundary, model, deck, context, i)
-      end select
-    end do
-    call close_boundary_step(step%constraint, boundary, step%schedule%period, model%amplitude)
-    call close_load_step(step%load, loads, step%schedule%period, model%amplitude)
+    associate (boundary => conditions%boundary, loads => conditions%loads)
+      call begin_boundary_step(boundary, deck, context, range(1), range(2))
+      call begin_load_step(loads, deck, context, range(1), range(2))
+      do i = range(1), range(2)
+        select case (deck%card(i)%keyword)
+        case ("STATIC")
+          call build_schedule(step, deck, context, i)
+        case ("CONTROLS")
+          call build_controls(step, deck, i)
+        case ("BOUNDARY")
+          call add_boundary(boundary, model, deck, context, i)
+        case ("CLOAD", "DLOAD", "DSLOAD")
+          call add_loads(loads, boundary, model, deck, context, i)
+        end select
+      end do
+      call close_boundary_step(step%constraint, boundary, step%schedule%period, model%amplitude)
+      call close_load_step(step%load, loads, step%schedule%period, model%amplitude)
+    end associate
     call build_requests(step, model, deck, context, range, time)
     time = time + step%schedule%period
     model%step(n) = step

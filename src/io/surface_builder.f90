@@ -2,9 +2,8 @@
 module mpm_surface_builder
   use mpm_build_context, only: at_field, at_parameter, build_context_t, define_name, fault, &
     & is_surface, place_t
-  use mpm_deck_card, only: deck_t, field_count, field_integer, field_is_integer, field_text, &
-    & parameter_text
-  use mpm_element_list, only: add_element, add_named_elements, element_list_t, fault_of_mesh_set
+  use mpm_deck_card, only: deck_t, field_count, field_text, parameter_text
+  use mpm_element_list, only: add_elements_of_field, element_list_t, fault_of_mesh_set
   use mpm_face_table, only: build_face_table, face_table_t, find_face
   use mpm_index_list, only: append_items, index_list_t, list_items
   use mpm_labelled_mesh, only: add_surface, find_set, labelled_mesh_t
@@ -58,11 +57,7 @@ contains
 
     face_place = at_field(place%card, place%line, 2)
     associate (line => deck%card(place%card)%data(place%line))
-      if (field_is_integer(line, 1)) then
-        call add_element(elements, mesh, deck, context, place, field_integer(line, 1))
-      else
-        call add_named_elements(elements, mesh, deck, context, place)
-      end if
+      call add_elements_of_field(elements, mesh, deck, context, place)
       face = 0
       if (field_count(line) > 1) face = opposite_node(field_text(line, 2), mesh%parent%n_dim)
       if (elements%body%n > 0 .and. field_count(line) == 1) then
