@@ -21,14 +21,14 @@ module mpm_boundary_builder
   !> What is prescribed at each degree of freedom.
   type :: boundary_state_t
     type(label_table_t) :: label                   !! nodes by number
-    logical, allocatable  :: filled(:)             !! (n_node)         belongs to an element with points
+    logical, allocatable  :: filled(:)             !! (n_node)         is in an element with points
     logical, allocatable  :: fixed(:, :)           !! (n_dim, n_node)  prescribed in the step
-    real(dp), allocatable :: start(:, :)           !! (n_dim, n_node)  total at the start of the step [length]
-    real(dp), allocatable :: value(:, :)           !! (n_dim, n_node)  total at the end of the step [length]
+    real(dp), allocatable :: start(:, :)           !! (n_dim, n_node)  total at the step's start
+    real(dp), allocatable :: value(:, :)           !! (n_dim, n_node)  total at the step's end
     integer, allocatable  :: amplitude(:, :)       !! (n_dim, n_node)  amplitude, 0 = ramp
     integer, allocatable  :: card(:, :)            !! (n_dim, n_node)  card that prescribes it
     integer, allocatable  :: line(:, :)            !! (n_dim, n_node)  data line of that card
-    logical, allocatable  :: new(:, :)             !! (n_dim, n_node)  prescribed by this step itself
+    logical, allocatable  :: new(:, :)             !! (n_dim, n_node)  given by this step itself
   end type boundary_state_t
 
 contains
@@ -65,11 +65,11 @@ contains
     integer :: j
 
     if (has_parameter(deck%card(i_card), "AMPLITUDE")) call fault(context, deck, &
-      & at_parameter(i_card, "AMPLITUDE"), "an amplitude in the model part, where *BOUNDARY fixes: " &
-      & //"expected it inside a step")
+      & at_parameter(i_card, "AMPLITUDE"), "an amplitude in the model part, where *BOUNDARY fixes" &
+      & //": expected it inside a step")
     if (has_parameter(deck%card(i_card), "OP")) call fault(context, deck, &
-      & at_parameter(i_card, "OP"), "OP in the model part, where nothing is carried over: expected " &
-      & //"it inside a step")
+      & at_parameter(i_card, "OP"), "OP in the model part, where nothing is carried over: " &
+      & //"expected it inside a step")
     do j = 1, size(deck%card(i_card)%data)
       associate (line => deck%card(i_card)%data(j))
         if (field_count(line) > 3) then
@@ -207,16 +207,16 @@ contains
   end subroutine prescribe
 
   !> Number of a data line in its file.
-  pure integer function line_number(deck, i_card, i_line)
+  pure integer function line_number(deck, i_card, i_line) result(number)
     type(deck_t), intent(in) :: deck      !! the deck
     integer, intent(in) :: i_card, i_line !! card and data line
 
-    line_number = deck%card(i_card)%data(i_line)%number
+    number = deck%card(i_card)%data(i_line)%number
   end function line_number
 
   !> Constraints of the step from what is prescribed, and the totals with which the next one starts.
   subroutine close_boundary_step(constraint, state, period, amplitude)
-    type(constraint_t), allocatable, intent(out) :: constraint(:) !! one per set, direction and start
+    type(constraint_t), allocatable, intent(out) :: constraint(:) !! one per line and direction
     type(boundary_state_t), intent(inout) :: state                !! ready for the next step
     real(dp), intent(in) :: period                                !! length of the step
     type(amplitude_t), intent(in) :: amplitude(:)                 !! amplitudes of the model
@@ -307,8 +307,8 @@ contains
       if (field_is_integer(line, place%field)) then
         found = find_label(state%label, field_integer(line, place%field))
         if (found > 0) node = [found]
-        if (found == 0) call fault(context, deck, place, "node "//name//" is not defined: expected " &
-          & //"a node of the mesh or the name of a node set")
+        if (found == 0) call fault(context, deck, place, "node "//name//" is not defined: " &
+          & //"expected a node of the mesh or the name of a node set")
       else
         call require_node_set(context, deck, mesh, place, name, found)
         if (found > 0) node = mesh%node_set(found)%item

@@ -175,8 +175,9 @@ contains
     integer :: found
 
     found = find_name(context, kind, name)
-    if (found == 0 .and. (kind == is_node_set .or. kind == is_surface)) &
+    if (found == 0 .and. (kind == is_node_set .or. kind == is_surface)) then
       found = find_name(context, is_element_set, name)
+    end if
     if (found > 0) context%definition(found)%used = .true.
   end subroutine use_name
 

@@ -21,7 +21,7 @@ module mpm_deck_mesh_builder
     integer, allocatable  :: node_label(:), node_card(:), node_line(:) !! (n_node)
     real(dp), allocatable :: x(:, :)                                   !! (3, n_node) [length]
     integer, allocatable  :: el_label(:), el_card(:), el_line(:)       !! (n_el)
-    integer, allocatable  :: node(:, :)                                !! (10, n_el) nodes, 0 beyond the last
+    integer, allocatable  :: node(:, :)                                !! (10, n_el) 0 = none
   end type deck_lines_t
 
 contains
@@ -325,11 +325,13 @@ contains
       do i = 1, lines%n_el
         if (mesh%kind(i) /= carrier_element) cycle
         element = 0
-        if (all(parent%carrier(:, mesh%item(i)) > 0)) &
+        if (all(parent%carrier(:, mesh%item(i)) > 0)) then
           call find_face(table, parent%carrier(:, mesh%item(i)), element, face)
-        if (element == 0) call fault(context, deck, at_field(lines%el_card(i), lines%el_line(i), 1), &
-          & "boundary element "//integer_text(lines%el_label(i))//" is no face of the body: " &
-          & //"expected the nodes of a face", code=exit_model)
+        end if
+        if (element > 0) cycle
+        call fault(context, deck, at_field(lines%el_card(i), lines%el_line(i), 1), &
+                   "boundary element "//integer_text(lines%el_label(i))//" is no face of the " &
+                   //"body: expected the nodes of a face", code=exit_model)
       end do
     end associate
   end subroutine check_carriers

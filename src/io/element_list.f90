@@ -7,7 +7,7 @@ module mpm_element_list
   use mpm_diagnostics, only: quoted
   use mpm_index_list, only: append_items, index_list_t
   use mpm_label_table, only: find_label
-  use mpm_labelled_mesh, only: body_element, carrier_element, edge_element, find_set, &
+  use mpm_labelled_mesh, only: body_element, carrier_element, find_set, &
     & labelled_mesh_t
   use mpm_text, only: integer_text, same_name
   implicit none
@@ -62,7 +62,7 @@ contains
       call append_items(list%body, [mesh%item(found)])
     case (carrier_element)
       call append_items(list%carrier, [mesh%item(found)])
-    case (edge_element)
+    case default
       call append_items(list%edge, [mesh%item(found)])
     end select
   end subroutine add_element
@@ -124,25 +124,25 @@ contains
         call fault(context, deck, place, quoted(name)//" is the wrong kind of set, a node set: " &
                    //"expected an element set")
       else
-        call fault(context, deck, place, "element set "//quoted(name)//" is not defined: expected " &
-          & //"the number of an element or the name of an element set", &
+        call fault(context, deck, place, "element set "//quoted(name)//" is not defined: " &
+          & //"expected the number of an element or the name of an element set", &
           & name_hint(name, [set_names(parent%element_set), set_names(parent%carrier_set)]))
       end if
     end associate
   end subroutine add_named_elements
 
   !> Whether a *NSET card defines a name; these are built after the element sets.
-  pure logical function is_node_set_of_deck(deck, name)
+  pure logical function is_node_set_of_deck(deck, name) result(found)
     type(deck_t), intent(in) :: deck !! the deck
     character(*), intent(in) :: name !! any case
     integer :: i
 
-    is_node_set_of_deck = .true.
+    found = .true.
     do i = 1, size(deck%card)
       if (deck%card(i)%keyword /= "NSET") cycle
       if (same_name(parameter_text(deck%card(i), "NSET", ""), name)) return
     end do
-    is_node_set_of_deck = .false.
+    found = .false.
   end function is_node_set_of_deck
 
   !> A set of this name came with the mesh.

@@ -21,7 +21,7 @@ contains
     type(deck_t), intent(in) :: deck                           !! the deck
     type(build_context_t), intent(inout) :: context            !! takes errors
     integer, intent(in) :: i_card                              !! *EXPECT
-    real(dp), intent(in) :: time(2)                            !! (2) total time at start and end of the step
+    real(dp), intent(in) :: time(2)                            !! (2) start and end of the step
     type(expectation_t) :: new
     integer :: j
 
@@ -107,10 +107,11 @@ contains
     if (new%quantity == "U" .and. len(new%set) > 0) new%of_nodes = &
       & find_node_set(model%mesh, new%set) > 0 .or. find_element_set(model%mesh, new%set) == 0
     if (len(new%set) == 0) then
-      if (new%of_nodes) call fault(context, deck, at_card(new%card), "RF without SET: expected the " &
-        & //"name of a node set")
+      if (new%of_nodes) call fault(context, deck, at_card(new%card), "RF without SET: expected " &
+        & //"the name of a node set")
     else if (new%of_nodes) then
-      call require_node_set(context, deck, model%mesh, at_parameter(new%card, "SET"), new%set, found)
+      call require_node_set(context, deck, model%mesh, at_parameter(new%card, "SET"), new%set, &
+                            found)
       if (found > 0) new%item = model%mesh%node_set(found)%item
     else
       call require_element_set(context, deck, model%mesh, at_parameter(new%card, "SET"), new%set, &

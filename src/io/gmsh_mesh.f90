@@ -47,38 +47,38 @@ module mpm_gmsh_mesh
 contains
 
   !> Dimension of a gmsh element type that we know, -1 for others.
-  pure integer function type_dimension(el_type)
+  pure integer function type_dimension(el_type) result(n_dim)
     integer, intent(in) :: el_type !! gmsh type
 
     select case (el_type)
     case (15)
-      type_dimension = 0
+      n_dim = 0
     case (1, 8)
-      type_dimension = 1
+      n_dim = 1
     case (2, 9)
-      type_dimension = 2
+      n_dim = 2
     case (4, 11)
-      type_dimension = 3
+      n_dim = 3
     case default
-      type_dimension = -1
+      n_dim = -1
     end select
   end function type_dimension
 
   !> Order of a gmsh element type: 1 or 2.
-  pure integer function type_order(el_type)
+  pure integer function type_order(el_type) result(order)
     integer, intent(in) :: el_type !! gmsh type that we know
 
-    type_order = merge(2, 1, el_type == 8 .or. el_type == 9 .or. el_type == 11)
+    order = merge(2, 1, el_type == 8 .or. el_type == 9 .or. el_type == 11)
   end function type_order
 
   !> Nodes of a gmsh element type that we know.
-  pure integer function type_nodes(el_type)
+  pure integer function type_nodes(el_type) result(n_node)
     integer, intent(in) :: el_type !! gmsh type
     integer :: n_corner
 
     n_corner = type_dimension(el_type) + 1
-    type_nodes = n_corner
-    if (type_order(el_type) == 2) type_nodes = n_corner + n_corner*(n_corner - 1)/2
+    n_node = n_corner
+    if (type_order(el_type) == 2) n_node = n_corner + n_corner*(n_corner - 1)/2
   end function type_nodes
 
   !> Name of a gmsh element type in words.

@@ -169,12 +169,12 @@ contains
   end subroutine check_carriers
 
   !> Last element of a block.
-  pure integer function block_end(raw, i_block)
+  pure integer function block_end(raw, i_block) result(last)
     type(gmsh_mesh_t), intent(in) :: raw !! content
     integer, intent(in) :: i_block       !! block
 
-    block_end = raw%n_el
-    if (i_block < size(raw%block)) block_end = raw%block(i_block + 1)%first - 1
+    last = raw%n_el
+    if (i_block < size(raw%block)) last = raw%block(i_block + 1)%first - 1
   end function block_end
 
   !> Nodes, elements and carriers. Our order of the mid-edge nodes of a tetrahedron differs from

@@ -59,11 +59,11 @@ contains
   end subroutine load_text
 
   !> Whether something went wrong already.
-  pure function failed(scanner)
+  pure function failed(scanner) result(has_failed)
     type(gmsh_scanner_t), intent(in) :: scanner !! any
-    logical :: failed                           !! .true. after the first failure
+    logical :: has_failed                       !! .true. after the first failure
 
-    failed = allocated(scanner%message)
+    has_failed = allocated(scanner%message)
   end function failed
 
   !> Failure at the last word.
@@ -170,11 +170,11 @@ contains
   end subroutine next_word
 
   !> Whether a character separates words.
-  pure function is_blank(character_1)
+  pure function is_blank(character_1) result(blank)
     character(1), intent(in) :: character_1 !! one character
-    logical :: is_blank                     !! .true. for blank, tab, carriage return
+    logical :: blank                        !! .true. for blank, tab, carriage return
 
-    is_blank = character_1 == " " .or. character_1 == achar(9) .or. character_1 == achar(13)
+    blank = character_1 == " " .or. character_1 == achar(9) .or. character_1 == achar(13)
   end function is_blank
 
   !> The next word as an integer.
@@ -249,11 +249,11 @@ contains
   end subroutine next_real
 
   !> The last word, cut to a length that fits a message.
-  pure function word(scanner)
+  pure function word(scanner) result(shown)
     type(gmsh_scanner_t), intent(in) :: scanner !! behind a word
-    character(:), allocatable :: word           !! printable
+    character(:), allocatable :: shown          !! printable
 
-    word = printable(scanner%text(scanner%word_first:min(scanner%at - 1, scanner%word_first + 39)))
+    shown = printable(scanner%text(scanner%word_first:min(scanner%at - 1, scanner%word_first + 39)))
   end function word
 
   !> The line must end here.
@@ -291,46 +291,46 @@ contains
   end subroutine rest_of_line
 
   !> Characters that are still to be read: no count in the file can be larger.
-  pure function bytes_left(scanner)
+  pure function bytes_left(scanner) result(n_byte)
     type(gmsh_scanner_t), intent(in) :: scanner !! anywhere
-    integer :: bytes_left                       !! at most huge
+    integer :: n_byte                           !! at most huge
 
-    bytes_left = int(min(int(huge(1), ip), len(scanner%text, ip) - scanner%at + 1))
+    n_byte = int(min(int(huge(1), ip), len(scanner%text, ip) - scanner%at + 1))
   end function bytes_left
 
   !> A line of the file for a message, cut and made printable.
-  pure function line_text(scanner, line)
+  pure function line_text(scanner, line) result(text)
     type(gmsh_scanner_t), intent(in) :: scanner !! with a file
     integer, intent(in) :: line                 !! number of the line
-    character(:), allocatable :: line_text      !! empty when there is no such line
+    character(:), allocatable :: text           !! empty when there is no such line
     integer(ip) :: first, length
     integer :: i
 
-    line_text = ""
+    text = ""
     first = 1
     do i = 1, line
       if (first > len(scanner%text)) return
       length = index(scanner%text(first:), achar(10), kind=ip) - 1
       if (length < 0) length = len(scanner%text, ip) - first + 1
-      if (i == line) line_text = printable(scanner%text(first:first + min(length, 200_ip) - 1))
+      if (i == line) text = printable(scanner%text(first:first + min(length, 200_ip) - 1))
       first = first + length + 1
     end do
   end function line_text
 
   !> Replaces what a terminal cannot show.
-  pure function printable(text)
+  pure function printable(text) result(clean)
     character(*), intent(in) :: text     !! any bytes
-    character(:), allocatable :: printable !! same length, without trailing carriage return
+    character(:), allocatable :: clean   !! same length, without trailing carriage return
     integer :: i
 
-    printable = text
+    clean = text
     do i = 1, len(text)
-      if (iachar(text(i:i)) == 9) printable(i:i) = " "
-      if (iachar(text(i:i)) < 32 .and. iachar(text(i:i)) /= 9) printable(i:i) = "?"
-      if (iachar(text(i:i)) > 126) printable(i:i) = "?"
+      if (iachar(text(i:i)) == 9) clean(i:i) = " "
+      if (iachar(text(i:i)) < 32 .and. iachar(text(i:i)) /= 9) clean(i:i) = "?"
+      if (iachar(text(i:i)) > 126) clean(i:i) = "?"
     end do
     if (len(text) > 0) then
-      if (text(len(text):) == achar(13)) printable = printable(:len(text) - 1)
+      if (text(len(text):) == achar(13)) clean = clean(:len(text) - 1)
     end if
   end function printable
 

@@ -20,7 +20,7 @@ module mpm_labelled_mesh
     type(label_table_t) :: element_table  !! elements of all kinds by number
     integer, allocatable :: kind(:)       !! (n_item) body_element, carrier_element or edge_element
     integer, allocatable :: item(:)       !! (n_item) index among the elements of its kind
-    integer, allocatable :: new_node(:)   !! (n)  node of the mesh, 0 if no element of the body uses it
+    integer, allocatable :: new_node(:)   !! (n)  node of the mesh, 0 if the body does not use it
     integer, allocatable :: carrier_node(:, :) !! (6, n_carrier)  all nodes, 0 beyond the last
     integer, allocatable :: edge_node(:, :)    !! (6, n_edge)     all nodes, 0 beyond the last
   end type labelled_mesh_t

@@ -41,6 +41,8 @@ contains
         material(n)%poisson = field_real(deck%card(i)%data(1), 2)
       case ("PLASTIC")
         call build_plasticity(material(n), deck, context, i)
+      case default
+        cycle
       end select
     end do
     if (n == 0) call fault(context, deck, at_card(1), "the deck has no *MATERIAL: expected " &

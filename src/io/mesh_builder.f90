@@ -68,6 +68,16 @@ contains
         return
       end if
     end do
+    call check_source(source, first_node, deck, context)
+  end subroutine find_source
+
+  !> Nodes and elements of the deck belong together, and exclude another mesh.
+  subroutine check_source(source, first_node, deck, context)
+    integer, intent(inout) :: source                !! card of the mesh, 0 after an error
+    integer, intent(in) :: first_node               !! first *NODE, 0 if there is none
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+
     if (source == 0 .and. first_node > 0) then
       call fault(context, deck, at_card(first_node), "nodes without elements: expected *ELEMENT")
     else if (source == 0) then
@@ -80,7 +90,7 @@ contains
       call fault(context, deck, at_card(first_node), "a second mesh, the first is *" &
         & //deck%card(source)%keyword//": expected one of *MESH, *GENERATE, *NODE with *ELEMENT")
     end if
-  end subroutine find_source
+  end subroutine check_source
 
   !> *MESH: reads the file.
   subroutine read_mesh_file(mesh, deck, context, i_card)

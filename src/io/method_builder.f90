@@ -1,4 +1,4 @@
-!> Builds what the method cards say: formulation, patches, material points, moving mesh, lost points.
+!> Builds formulation, patches, material points, moving mesh and what happens to lost points.
 module mpm_method_builder
   use mpm_build_context, only: at_card, at_parameter, build_context_t, fault, fault_of, &
     & is_material, name_hint, require_element_set, require_node_set, use_name
@@ -35,15 +35,16 @@ contains
       select case (deck%card(i)%keyword)
       case ("FORMULATION")
         has_formulation = .true.
-        model%formulation = formulation_fbar
-        if (parameter_choice(deck%card(i), "TYPE", "") == "STANDARD") &
-          model%formulation = formulation_standard
+        model%formulation = merge(formulation_standard, formulation_fbar, &
+                                  parameter_choice(deck%card(i), "TYPE", "") == "STANDARD")
       case ("PATCH")
         i_patch = i
       case ("MOVING MESH")
         call build_motion(model, deck, context, i)
       case ("LOST POINTS")
         call build_location(model, deck, i)
+      case default
+        cycle
       end select
     end do
     if (.not. has_formulation) call fault(context, deck, at_card(1), "the deck has no " &
@@ -116,13 +117,13 @@ contains
   end subroutine build_motion
 
   !> Whether numbers are a direction in the space of the mesh; in the plane a zero z may be given.
-  pure logical function is_direction(direction, n_dim)
+  pure logical function is_direction(direction, n_dim) result(valid)
     real(dp), intent(in) :: direction(:) !! (n) numbers of the deck
     integer, intent(in) :: n_dim         !! 2 or 3
 
-    is_direction = size(direction) == n_dim
-    if (n_dim == 2 .and. size(direction) == 3) is_direction = abs(direction(3)) <= 0.0_dp
-    if (is_direction) is_direction = norm2(direction) > 0.0_dp
+    valid = size(direction) == n_dim
+    if (n_dim == 2 .and. size(direction) == 3) valid = abs(direction(3)) <= 0.0_dp
+    if (valid) valid = norm2(direction) > 0.0_dp
   end function is_direction
 
   !> *LOST POINTS.

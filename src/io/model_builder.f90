@@ -69,6 +69,8 @@ contains
       case ("UNITS")
         model%unit_length = parameter_text(deck%card(i), "LENGTH", "")
         model%unit_force = parameter_text(deck%card(i), "FORCE", "")
+      case default
+        cycle
       end select
     end do
   end subroutine build_texts
@@ -106,7 +108,7 @@ contains
     end do
   end subroutine check_supports
 
-  !> The mesh follows the prescribed displacement of the driver: its nodes need one, the same for all.
+  !> The mesh follows the prescribed displacement of the driver: all its nodes need the same.
   subroutine check_driver(model, deck, context)
     type(model_t), intent(in) :: model              !! complete
     type(deck_t), intent(in) :: deck                !! the deck
@@ -126,8 +128,8 @@ contains
           call fault(context, deck, at_parameter(card, "DRIVER"), "node " &
             & //integer_text(model%mesh%node_label(model%motion%driver(j)))//" of the driver has " &
             & //"no displacement in direction "//integer_text(d)//", or another one than the " &
-            & //"rest, in step "//model%step(i)%name//": expected one *BOUNDARY value for the set", &
-            & code=exit_model)
+            & //"rest, in step "//model%step(i)%name//": expected one *BOUNDARY value for the " &
+            & //"set", code=exit_model)
           return
         end do
       end do
@@ -135,7 +137,7 @@ contains
   end subroutine check_driver
 
   !> Whether a node moves like the first node of the driver.
-  pure logical function is_driven(step, node, first, direction)
+  pure logical function is_driven(step, node, first, direction) result(driven)
     type(step_t), intent(in) :: step !! with constraints
     integer, intent(in) :: node      !! node of the driver
     integer, intent(in) :: first     !! first node of the driver
@@ -149,10 +151,10 @@ contains
       if (any(step%constraint(i)%node == node)) i_node = i
       if (any(step%constraint(i)%node == first)) i_first = i
     end do
-    is_driven = i_node > 0 .and. i_first > 0
-    if (.not. is_driven .or. i_node == i_first) return
+    driven = i_node > 0 .and. i_first > 0
+    if (.not. driven .or. i_node == i_first) return
     associate (a => step%constraint(i_node), b => step%constraint(i_first))
-      is_driven = abs(a%value - b%value) <= 0.0_dp .and. abs(a%start - b%start) <= 0.0_dp &
+      driven = abs(a%value - b%value) <= 0.0_dp .and. abs(a%start - b%start) <= 0.0_dp &
                   .and. a%amplitude == b%amplitude
     end associate
   end function is_driven

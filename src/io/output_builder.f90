@@ -96,8 +96,8 @@ contains
     point = 0
     x = parameter_reals(deck%card(i_card), "POINT")
     if (size(x) /= model%mesh%n_dim) then
-      call fault(context, deck, at_parameter(i_card, "POINT"), "a point of "//integer_text(size(x)) &
-                 //" numbers: expected "//integer_text(model%mesh%n_dim))
+      call fault(context, deck, at_parameter(i_card, "POINT"), "a point of " &
+                 //integer_text(size(x))//" numbers: expected "//integer_text(model%mesh%n_dim))
       return
     end if
     if (model%points%n == 0) return

@@ -156,8 +156,8 @@ contains
 
     found = find_label(mesh%node_table, label)
     if (found == 0) then
-      call fault(context, deck, place, "node "//integer_text(label)//" is not defined: expected a " &
-                 //"node of the mesh")
+      call fault(context, deck, place, "node "//integer_text(label)//" is not defined: " &
+                 //"expected a node of the mesh")
     else if (mesh%new_node(found) == 0) then
       call fault(context, deck, place, "node "//integer_text(label)//" belongs to no element of " &
                  //"the body: expected a node of the body")

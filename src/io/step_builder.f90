@@ -15,7 +15,7 @@ module mpm_step_builder
   private
   public :: build_steps
 
-  real(dp), parameter :: smallest_part = 1.0e-5_dp !! default minimum of an increment over the period
+  real(dp), parameter :: smallest_part = 1.0e-5_dp !! default minimum over the period
 
   !> What is in force; it carries over from step to step.
   type :: conditions_t
@@ -53,6 +53,8 @@ contains
         first = 0
       case ("BOUNDARY")
         if (first == 0) call fix_boundary(conditions%boundary, model, deck, context, i)
+      case default
+        cycle
       end select
     end do
   end subroutine build_steps
@@ -83,6 +85,8 @@ contains
           call add_boundary(boundary, model, deck, context, i)
         case ("CLOAD", "DLOAD", "DSLOAD")
           call add_loads(loads, boundary, model, deck, context, i)
+        case default
+          cycle
         end select
       end do
       call close_boundary_step(step%constraint, boundary, step%schedule%period, model%amplitude)
@@ -139,18 +143,19 @@ contains
                    //real_text(schedule%minimum)//" is larger than the first: expected at most " &
                    //real_text(schedule%initial))
       else if (schedule%direct .and. field_count(line) > 3) then
-        call fault(context, deck, at_field(i_card, 1, 4), "a largest increment with DIRECT, where " &
-                   //"all are equal: expected no fourth value")
+        call fault(context, deck, at_field(i_card, 1, 4), "a largest increment with DIRECT, " &
+                   //"where all are equal: expected no fourth value")
       else if (schedule%maximum < schedule%initial) then
         call fault(context, deck, at_field(i_card, 1, 4), "the largest increment " &
                    //real_text(schedule%maximum)//" is smaller than the first: expected at least " &
                    //real_text(schedule%initial))
       end if
       needed = schedule%period/schedule%initial
-      if (schedule%direct .and. needed > real(schedule%max_increments, dp) + 0.5_dp) &
+      if (schedule%direct .and. needed > real(schedule%max_increments, dp) + 0.5_dp) then
         call fault(context, deck, at_field(i_card, 1, 1), "the step needs "//real_text(needed) &
                    //" increments, INC allows "//integer_text(schedule%max_increments) &
                    //": expected a larger INC on *STEP")
+      end if
     end associate
   end subroutine build_schedule
 
@@ -189,6 +194,8 @@ contains
       case ("EXPECT")
         call build_expectation(step%expectation, model, deck, context, i, &
                                [time, time + step%schedule%period])
+      case default
+        cycle
       end select
     end do
   end subroutine build_requests

@@ -15,7 +15,7 @@ contains
   !> Finds the first body that the constraints do not hold: elements with points that hang together
   !! by nodes. Its free modes are named in words.
   pure subroutine find_free_modes(modes, element, mesh, points, constraint)
-    character(:), allocatable, intent(out) :: modes  !! such as "translation in y", empty if all is held
+    character(:), allocatable, intent(out) :: modes  !! "translation in y", empty if all is held
     integer, intent(out) :: element                  !! an element of that body, 0 if all is held
     type(mesh_t), intent(in) :: mesh                 !! initial mesh
     type(points_t), intent(in) :: points             !! initial points
@@ -84,13 +84,13 @@ contains
   end subroutine join
 
   !> Root of a node in the forest.
-  pure integer function root(body, a)
+  pure integer function root(body, a) result(top)
     integer, intent(in) :: body(:) !! (n_node) parents
     integer, intent(in) :: a       !! node
 
-    root = a
-    do while (body(root) /= root)
-      root = body(root)
+    top = a
+    do while (body(top) /= top)
+      top = body(top)
     end do
   end function root
 
