@@ -1,5 +1,6 @@
 """The three examples with both formulations: the numbers that must hold."""
 
+import itertools
 import os
 import shutil
 import subprocess
@@ -156,7 +157,9 @@ def test_footing_locks_with_standard_method(footing):
 @pytest.mark.parametrize("method", METHODS)
 def test_footing_is_in_equilibrium_with_base(footing, method):
     history = footing[method].history
-    np.testing.assert_allclose(history["RF3[BASE]"], -history["RF3[FOOTING]"], rtol=1e-8, atol=1e-12)
+    np.testing.assert_allclose(
+        history["RF3[BASE]"], -history["RF3[FOOTING]"], rtol=1e-8, atol=1e-12
+    )
 
 
 def test_footing_pressure_is_no_checkerboard_with_fbar(footing):
@@ -182,7 +185,7 @@ def test_footing_keeps_all_points(footing):
 def test_newton_is_quadratic_in_last_increment_of_footing(footing):
     residual = footing["fbar"].newton()[-1]
     residual = residual[1:]  # the first correction carries the prescribed displacement
-    pairs = [(a, b) for a, b in zip(residual[:-1], residual[1:]) if 1e-5 < a < 1e-2]
+    pairs = [(a, b) for a, b in itertools.pairwise(residual) if 1e-5 < a < 1e-2]
     assert len(pairs) >= 2, residual
     for before, after in pairs:
         assert after < 100.0 * before**2, residual
@@ -242,7 +245,17 @@ def test_decks_pass_check_and_tell_analytic_from_frozen(example, tessera, run_pr
 
 
 @pytest.mark.parametrize("example", ["footing", "stretch", "strip-footing"])
-def test_tangents_of_examples_agree_with_differences(example, tessera_release, run_program, tmp_path):
+def test_tangents_of_examples_agree_with_differences(
+    example, tessera_release, run_program, tmp_path
+):
     deck = ROOT / "input" / example / f"{example}.inp"
     run = run_program(tessera_release, "--check-tangent", "-o", tmp_path, deck)
     assert run.code == 0, run.stderr
+
+
+def test_deck_of_the_readme_runs(tessera, run_program, tmp_path):
+    readme = (ROOT / "README.md").read_text()
+    deck = readme[readme.index("*HEADING") : readme.index("*END STEP")] + "*END STEP\n"
+    (tmp_path / "bar.inp").write_text(deck)
+    run = run_program(tessera, "-q", "bar.inp")
+    assert (run.code, run.stderr) == (0, "")

@@ -3,7 +3,8 @@
     python tools/pressure_plot.py DIRECTORY [PICTURE]
 
 The directory holds footing_standard.vtkhdf, footing_fbar.vtkhdf and their _mesh files; each
-element has one colour, the mean pressure of its material points at the end of the run.
+element has one colour, the mean pressure of its material points at the end of the run. The two
+scales differ.
 """
 
 import sys
@@ -54,41 +55,44 @@ def plane_faces(path):
     return x[nodes][:, :, 1:], element + 1
 
 
+def draw(axis, folder, method, title):
+    """One panel with its own colour scale; answers the image for the colour bar."""
+    pressure = element_pressures(folder / f"footing_{method}.vtkhdf")
+    faces, element = plane_faces(folder / f"footing_{method}_mesh.vtkhdf")
+    corners = faces.reshape(-1, 2)
+    values = np.array([pressure.get(number, np.nan) for number in element])
+    limit = np.nanpercentile(np.abs(values), 99)
+    image = axis.tripcolor(
+        corners[:, 0],
+        corners[:, 1] - corners[:, 1].max(),
+        np.arange(len(corners)).reshape(-1, 3),
+        facecolors=values,
+        cmap="RdBu_r",
+        vmin=-limit,
+        vmax=limit,
+        edgecolors="0.4",
+        linewidth=0.2,
+    )
+    footing = {"color": "black", "linewidth": 5, "solid_capstyle": "butt", "clip_on": False}
+    axis.plot([0.0, HALF_WIDTH], [0.02, 0.02], **footing)
+    axis.set(
+        title=f"{title}: {np.nanmin(values):.1f} to {np.nanmax(values):.1f} kPa",
+        xlabel="distance from the axis [m]",
+        xlim=(0.0, WINDOW),
+        ylim=(-WINDOW, 0.05),
+        aspect="equal",
+    )
+    return image
+
+
 def main():
     folder = Path(sys.argv[1])
     picture = Path(sys.argv[2]) if len(sys.argv) > 2 else folder / "footing_pressure.png"
-    figure, axes = plt.subplots(1, 2, figsize=(9.0, 4.6), layout="constrained", sharey=True)
-    limit = None
+    figure, axes = plt.subplots(1, 2, figsize=(10.0, 4.4), layout="constrained", sharey=True)
     for axis, (method, title) in zip(axes, METHODS.items()):
-        pressure = element_pressures(folder / f"footing_{method}.vtkhdf")
-        faces, element = plane_faces(folder / f"footing_{method}_mesh.vtkhdf")
-        corners = faces.reshape(-1, 2)
-        values = np.array([pressure.get(number, np.nan) for number in element])
-        if limit is None:
-            top = corners[:, 1].max()
-            limit = np.nanpercentile(np.abs(values), 99)
-        image = axis.tripcolor(
-            corners[:, 0],
-            corners[:, 1] - top,
-            np.arange(len(corners)).reshape(-1, 3),
-            facecolors=values,
-            cmap="RdBu_r",
-            vmin=-limit,
-            vmax=limit,
-            edgecolors="0.4",
-            linewidth=0.2,
-        )
-        axis.plot([0.0, HALF_WIDTH], [0.01, 0.01], color="black", linewidth=5, clip_on=False)
-        axis.set(
-            title=title,
-            xlabel="distance from the axis [m]",
-            xlim=(0.0, WINDOW),
-            ylim=(-WINDOW, 0.05),
-            aspect="equal",
-        )
-        print(f"{title}: mean pressures of elements from {np.nanmin(values):.2f} to {np.nanmax(values):.2f} kPa")
+        image = draw(axis, folder, method, title)
+        figure.colorbar(image, ax=axis, label="pressure [kPa]", shrink=0.9)
     axes[0].set_ylabel("depth [m]")
-    figure.colorbar(image, ax=axes, label="pressure [kPa], compression positive", shrink=0.85)
     figure.savefig(picture, dpi=150)
     print(f"picture {picture}")
 
