@@ -149,6 +149,7 @@ contains
     end if
     call close_output(output, model, state, exit_code, error)
     if (.not. options%quiet) call print_summary(output, paths, model, options)
+    if (options%quiet .and. exit_code == exit_expectation) call print_failures(output)
     if (allocated(failure)) call move_alloc(failure, error)
   end subroutine run_formulation
 
@@ -169,6 +170,16 @@ contains
     write (output_unit, "(a)") model%job//": log "//paths%log//", history "//paths%history// &
       ", fields "//paths%points//" and "//paths%mesh
   end subroutine print_summary
+
+  !> Expectations that failed: also a quiet run tells why it ends with an exit code.
+  subroutine print_failures(output)
+    type(run_output_t), intent(in) :: output
+    integer :: i
+
+    do i = 1, size(output%verdict)
+      if (.not. output%verdict(i)%met) write (error_unit, "(a)") verdict_line(output%verdict(i))
+    end do
+  end subroutine print_failures
 
   !> --check-tangent: the tangent of the first increment at a random state.
   subroutine run_tangent_check(exit_code, model, error)

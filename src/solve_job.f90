@@ -24,6 +24,14 @@ module mpm_solve_job
   private
   public :: make_body, prepare_increment, solve_job
 
+  !> What an analysis carries from increment to increment.
+  type :: analysis_t
+    type(body_t)     :: body
+    type(system_t)   :: system
+    type(schedule_t) :: schedule
+    type(locator_t)  :: locator
+  end type analysis_t
+
 contains
 
   !> Solves all steps of a model and hands every attempt and every increment to the output.
@@ -33,28 +41,28 @@ contains
     type(model_t), intent(inout)      :: model         !! at time zero; its loads are prepared
     logical, intent(in)               :: only_check    !! write increment 0, do not solve
     type(error_t), allocatable, intent(out) :: error   !! no convergence, lost point, file ...
-    type(body_t)     :: body
-    type(system_t)   :: system
-    type(schedule_t) :: schedule
-    type(locator_t)  :: locator
+    type(analysis_t) :: analysis
     integer :: i
 
-    call make_body(body, model)
-    call open_system(system, body)
-    call make_run_state(state, body%mesh%n_dim, body%mesh%n_node, body%mesh%n_el, model%patches%n)
+    call make_body(analysis%body, model)
+    call open_system(analysis%system, analysis%body)
+    call make_run_state(state, model%mesh%n_dim, model%mesh%n_node, model%mesh%n_el, &
+                        model%patches%n)
     state%started = wall_time()
-    call find_active(system, body%points)
-    call write_increment(output, model, body%mesh, body%points, state, error)
+    call find_active(analysis%system, analysis%body%points)
+    call write_increment(output, model, analysis%body%mesh, analysis%body%points, state, error)
     do i = 1, size(model%step)
       call prepare_loads(model%step(i)%load, model%mesh, model%points)
     end do
     do i = 1, size(model%step)
       if (allocated(error) .or. only_check) exit
-      call begin_step(schedule, i, model%step(i)%schedule, stop_times(model, i, schedule%total_time))
-      call solve_step(schedule, body, system, locator, output, state, model, error)
+      call begin_step(analysis%schedule, i, model%step(i)%schedule, &
+                      stop_times(model, i, analysis%schedule%total_time))
+      call solve_step(analysis, output, state, model, error)
     end do
-    if (allocated(error)) call keep_last_state(output, state, model, body, schedule)
-    call free_system(system)
+    if (allocated(error)) call keep_last_state(output, state, model, analysis%body, &
+                                               analysis%schedule)
+    call free_system(analysis%system)
   end subroutine solve_job
 
   !> Before a run ends early: the fields of the last accepted increment. The failure that ends the
@@ -73,11 +81,8 @@ contains
   end subroutine keep_last_state
 
   !> The increments of one step: the algorithm.
-  subroutine solve_step(schedule, body, system, locator, output, state, model, error)
-    type(schedule_t), intent(inout)   :: schedule !! at the start of the step
-    type(body_t), intent(inout)       :: body
-    type(system_t), intent(inout)     :: system
-    type(locator_t), intent(inout)    :: locator
+  subroutine solve_step(analysis, output, state, model, error)
+    type(analysis_t), intent(inout)   :: analysis !! at the start of the step
     type(run_output_t), intent(inout) :: output
     type(run_state_t), intent(inout)  :: state
     type(model_t), intent(in)         :: model
@@ -85,35 +90,37 @@ contains
     type(newton_report_t)   :: report
     type(location_report_t) :: location
 
-    do while (.not. schedule%finished)
-      call start_increment(schedule)                                             ! size from the last outcome
-      call prepare_increment(system, body, model, schedule, error)               ! unknowns, pattern, loads
-      if (allocated(error)) return
-      call find_equilibrium(system, report, body, model%step(schedule%step)%newton)
-      call note_attempt(state, schedule, report, system)
-      if (report%outcome == outcome_converged) call note_equilibrium(state, system, body, model)
-      call write_attempt(output, state, report, error)
-      if (allocated(error)) return
-      if (report%outcome /= outcome_converged) then
-        call shorten(schedule, report, model, error)
+    associate (body => analysis%body, system => analysis%system, schedule => analysis%schedule)
+      do while (.not. schedule%finished)
+        call start_increment(schedule) ! size from the last outcome
+        call prepare_increment(system, body, model, schedule, error) ! unknowns, pattern, loads
         if (allocated(error)) return
-        cycle
-      end if
-      call accept_points(body, system)
-      call accept_step(schedule, report%n_iterations)
-      call lay_out_mesh(body, system, model, error)
-      if (allocated(error)) return
-      call locate_points(body%points, body%mesh, locator, model%location, location)
-      if (location%first_lost > 0 .and. model%location%lost_action == lost_is_error) then
-        call report_lost_point(error, body, location, model)
-        return
-      end if
-      call note_location(state, schedule, location)
-      call write_increment(output, model, body%mesh, body%points, state, error)
-      if (allocated(error)) return
-      call check_count(schedule, model, error)
-      if (allocated(error)) return
-    end do
+        call find_equilibrium(system, report, body, model%step(schedule%step)%newton)
+        call note_attempt(state, schedule, report, system)
+        if (report%outcome == outcome_converged) call note_equilibrium(state, system, body, model)
+        call write_attempt(output, state, report, error)
+        if (allocated(error)) return
+        if (report%outcome /= outcome_converged) then
+          call shorten(schedule, report, model, error)
+          if (allocated(error)) return
+          cycle
+        end if
+        call accept_points(body, system)
+        call accept_step(schedule, report%n_iterations)
+        call lay_out_mesh(body, system, model, error)
+        if (allocated(error)) return
+        call locate_points(body%points, body%mesh, analysis%locator, model%location, location)
+        if (location%first_lost > 0 .and. model%location%lost_action == lost_is_error) then
+          call report_lost_point(error, body, location, model)
+          return
+        end if
+        call note_location(state, schedule, location)
+        call write_increment(output, model, body%mesh, body%points, state, error)
+        if (allocated(error)) return
+        call check_count(schedule, model, error)
+        if (allocated(error)) return
+      end do
+    end associate
   end subroutine solve_step
 
   !> The body at time zero; with the standard formulation every element is its own patch.
@@ -164,8 +171,10 @@ contains
     increment = time_increment_t(schedule%step_time, schedule%size, schedule%settings%period)
     associate (step => model%step(schedule%step))
       call find_active(system, body%points)
-      call number_dofs(system%dofs, body%mesh, system%active, step%constraint, increment, model%amplitude)
-      call external_force(system%f_ext, step%load, body%mesh, body%points, increment, model%amplitude)
+      call number_dofs(system%dofs, body%mesh, system%active, step%constraint, increment, &
+                       model%amplitude)
+      call external_force(system%f_ext, step%load, body%mesh, body%points, increment, &
+                          model%amplitude)
     end associate
     node = loaded_inactive_node(system%f_ext, system%dofs)
     if (node > 0) then
@@ -175,7 +184,8 @@ contains
       return
     end if
     if (pattern_is_current(system%map, system%active, system%dofs)) return
-    call build_pattern(system%tangent, system%map, body%patches, body%mesh, system%dofs, system%active)
+    call build_pattern(system%tangent, system%map, body%patches, body%mesh, system%dofs, &
+                       system%active)
     call analyse(system%solver, system%tangent, outcome)
     if (outcome == solver_memory) then
       call make_error(error, exit_solver, "error: not enough memory for the analysis of the "// &

@@ -2486,5 +2486,12 @@ error: 8 material points left the mesh, the first is point 1 at (5.33333, 0.1666
 """),
         arguments=("-q",),
     ),
-    Case("expect_failed", PLANE, [("-0.001, 1e-9", "-0.002, 1e-9")], 7, "", arguments=("-q",)),
+    Case(
+        "expect_failed",
+        PLANE,
+        [("-0.001, 1e-9", "-0.002, 1e-9")],
+        7,
+        "EXPECT job.inp:28 MEAN U2[Y1] at 1: analytic -0.002 +- 2e-12, found -0.001: FAILED\n",
+        arguments=("-q",),
+    ),
 ]

@@ -171,8 +171,9 @@ contains
     real(dp), intent(in)    :: grad_shape(:, :)   !! (n_dim, n_dim+1)  current gradients
     real(dp), intent(in)    :: moduli(6, 6)       !! sum v c/Jbar
     real(dp), intent(in)    :: stress(6)          !! sum v sigma
-    real(dp) :: column(6), tensor(3, 3), traction(size(grad_shape, 1)), geometric
-    integer :: a, b, i, j, k, n_dim
+    real(dp) :: column(6), tensor(3, 3), rate(3, 3)
+    real(dp) :: traction(size(grad_shape, 1)), force(size(grad_shape, 1))
+    integer :: a, b, j, k, n_dim
 
     n_dim = size(grad_shape, 1)
     tensor = tensor_from_voigt(stress)
@@ -183,15 +184,11 @@ contains
         do j = 1, n_dim
           column = column + moduli(:, voigt_index(k, j))*grad_shape(j, b)
         end do
+        rate = tensor_from_voigt(column)
         do a = 1, n_dim + 1
-          do j = 1, n_dim
-            do i = 1, n_dim
-              block(equation(i, a), equation(k, b)) = block(equation(i, a), equation(k, b)) &
-                + column(voigt_index(i, j))*grad_shape(j, a)
-            end do
-          end do
-          geometric = dot_product(grad_shape(:, a), traction)
-          block(equation(k, a), equation(k, b)) = block(equation(k, a), equation(k, b)) + geometric
+          force = matmul(rate(1:n_dim, 1:n_dim), grad_shape(:, a))
+          force(k) = force(k) + dot_product(grad_shape(:, a), traction)
+          block(equation(:, a), equation(k, b)) = block(equation(:, a), equation(k, b)) + force
         end do
       end do
     end do
