@@ -18,5 +18,5 @@ if [ "$status" -ne 0 ] && [ "$status" -ne 7 ]; then # 7: finished, but an *EXPEC
   exit "$status"
 fi
 
-.venv/bin/python tools/demo_plot.py "$root/build/demo"
+.venv/bin/python post/footing_curves.py "$root/build/demo"
 exit "$status"

@@ -1,6 +1,6 @@
 """Draws the pressure on a symmetry plane of the footing, standard beside F-bar.
 
-    python tools/pressure_plot.py DIRECTORY [PICTURE]
+    python post/footing_pressure.py DIRECTORY [PICTURE]
 
 The directory holds footing_standard.vtkhdf, footing_fbar.vtkhdf and their _mesh files; each
 element has one colour, the mean pressure of its material points at the end of the run. The two

@@ -1,6 +1,6 @@
 """Draws the footing's reaction over its settlement, standard and F-bar, and prints the limit loads.
 
-    python tools/demo_plot.py DIRECTORY
+    python post/footing_curves.py DIRECTORY
 
 The directory holds footing_standard_history.csv and footing_fbar_history.csv; the picture goes
 there, too.
