@@ -110,13 +110,13 @@ contains
         call lay_out_mesh(body, system, model, error)
         if (allocated(error)) return
         call locate_points(body%points, body%mesh, analysis%locator, model%location, location)
+        call note_location(state, schedule, location)
+        call write_increment(output, model, body%mesh, body%points, state, error)
+        if (allocated(error)) return
         if (location%first_lost > 0 .and. model%location%lost_action == lost_is_error) then
           call report_lost_point(error, body, location, model)
           return
         end if
-        call note_location(state, schedule, location)
-        call write_increment(output, model, body%mesh, body%points, state, error)
-        if (allocated(error)) return
         call check_count(schedule, model, error)
         if (allocated(error)) return
       end do
