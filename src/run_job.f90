@@ -38,16 +38,19 @@ contains
     type(model_t)  :: model, variant
     type(run_info_t) :: info
     integer, allocatable :: formulation(:)
+    character(:), allocatable :: warnings
     integer :: i, code
 
     exit_code = exit_ok
-    call read_model(model, deck, options, error)
+    call read_model(model, deck, warnings, options, error)
     if (allocated(error)) return
     formulation = formulations(options, model)
     call make_run_info(info, deck%file(1)%path, deck%source, options%threads, options%quiet)
     info%verbose = options%verbose
+    info%warnings = warnings
     do i = 1, size(formulation)
       variant = model
+      info%formulation = formulation_name(formulation(i))
       call choose_formulation(variant, formulation(i), size(formulation) > 1)
       if (options%check_tangent) then
         call run_tangent_check(code, variant, error)
@@ -60,18 +63,21 @@ contains
   end subroutine run_job
 
   !> Deck and model; warnings go to stderr.
-  subroutine read_model(model, deck, options, error)
+  subroutine read_model(model, deck, warnings, options, error)
     type(model_t), intent(out) :: model
     type(deck_t), intent(out)  :: deck
+    character(:), allocatable, intent(out) :: warnings !! empty if there is none
     type(command_line_t), intent(in) :: options
     type(error_t), allocatable, intent(out) :: error
     type(diagnostics_t) :: diag
 
+    warnings = ""
     call read_deck(deck, options%deck, diag)
     call to_error(diag, exit_deck, error)
     if (allocated(error)) return
     call build_model(model, deck, options%lax, diag, error)
-    if (len(warnings_text(diag)) > 0) write (error_unit, "(a)") warnings_text(diag)
+    warnings = warnings_text(diag)
+    if (len(warnings) > 0) write (error_unit, "(a)") warnings
   end subroutine read_model
 
   !> Formulations of --compare, else that of the deck.

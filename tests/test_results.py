@@ -207,6 +207,30 @@ def test_status_file_has_a_line_per_attempt(bar_run):
     assert all(line.endswith("converged") for line in lines[1:])
 
 
+def test_formulation_of_the_run_stands_in_the_file(run_tessera):
+    run = run_tessera(bar(), "--compare", "standard,fbar", "-q")
+    assert run.code == 0, run.stderr
+    for method in ("standard", "fbar"):
+        with h5py.File(run.folder / f"job_{method}.vtkhdf") as file:
+            assert file["tessera"].attrs["formulation"] == method.encode()
+
+
+def test_deck_is_stored_byte_for_byte(run_tessera):
+    deck = ("** tab\tand umlaut \u00e4  \n\n" + bar()).rstrip("\n").encode()
+    run = run_tessera(deck, "--check")
+    assert run.code == 0, run.stderr
+    with h5py.File(run.folder / "job.vtkhdf") as file:
+        assert file["tessera/deck"][()] == deck
+
+
+def test_log_echoes_warnings(run_tessera):
+    deck = bar().replace("*STEP,", "*NSET, NSET=IDLE\n1\n*STEP,")
+    run = run_tessera(deck, "--lax", "--check")
+    assert run.code == 0, run.stderr
+    assert "warning: nothing uses" in run.stderr
+    assert run.stderr.strip() in run.read("job.log")
+
+
 def test_log_echoes_deck_settings_and_summary(bar_run):
     log = bar_run.read("job.log")
     assert bar().strip() in log

@@ -25,7 +25,7 @@ module mpm_run_log
 
 contains
 
-  !> Opens the log and writes the program, the deck and the model.
+  !> Opens the log and writes the program, the deck, the warnings about it and the model.
   subroutine open_log(log, path, model, info, error)
     type(run_log_t), intent(out) :: log              !! open
     character(*), intent(in) :: path                 !! file
@@ -40,6 +40,8 @@ contains
                     //line_end//"started: "//info%started//", threads " &
                     //integer_text(info%n_threads)//line_end//line_end//"deck "//info%deck_name &
                     //line_end//info%deck_text//line_end//"end of deck"//line_end, error)
+    if (allocated(error)) return
+    if (len(info%warnings) > 0) call log_message(log, "warnings"//line_end//info%warnings//line_end, error)
     if (allocated(error)) return
     call write_line(log%file, model_text(model)//freedom_ratio_text(model)//set_text(model%mesh), &
                     error)

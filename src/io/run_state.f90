@@ -9,10 +9,12 @@ module mpm_run_state
   public :: run_info_t, run_state_t
   public :: end_of_run, estimated_time_left, make_run_info, make_run_state
 
-  !> What stays the same during a run and is not part of the model.
+  !> What stays the same during a run and is no part of the model, or its name in the results.
   type :: run_info_t
     character(:), allocatable :: deck_name !! file name of the deck
     character(:), allocatable :: deck_text !! full text of the deck with its includes
+    character(:), allocatable :: warnings  !! about the deck, empty if there is none
+    character(:), allocatable :: formulation !! standard or fbar
     character(:), allocatable :: version   !! of the program
     character(:), allocatable :: git       !! revision of the source
     character(:), allocatable :: compiler  !! name and version of the compiler
@@ -104,6 +106,8 @@ contains
 
     info%deck_name = deck_path(index(deck_path, "/", back=.true.) + 1:)
     info%deck_text = deck_text
+    info%warnings = ""
+    info%formulation = ""
     info%n_threads = n_threads
     info%quiet = quiet
     info%version = build_version

@@ -49,6 +49,7 @@ contains
     call write_text_attribute(file, "/tessera", "compiler", info%compiler, error)
     call write_text_attribute(file, "/tessera", "libraries", info%libraries, error)
     call write_text_attribute(file, "/tessera", "units", units, error)
+    call write_text_attribute(file, "/tessera", "formulation", info%formulation, error)
     call write_text_attribute(file, "/tessera", "started", info%started, error)
     call write_integers_attribute(file, "/tessera", "threads", [int(info%n_threads, ip)], error)
     call create_history(tables%history, file, columns, error)

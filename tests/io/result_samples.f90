@@ -144,6 +144,8 @@ contains
 
     info%deck_name = "sample.inp"
     info%deck_text = "*HEADING"//new_line("a")//"two tetrahedra"
+    info%warnings = ""
+    info%formulation = "fbar"
     info%version = "1.2.3"
     info%git = "abcdef"
     info%compiler = "GNU 12"
