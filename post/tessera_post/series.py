@@ -1,0 +1,144 @@
+"""A VTKHDF file with time steps: the one place that knows how it is laid out."""
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from tessera_post.errors import PostError, one_of
+
+VTK_TRIANGLE = 5
+
+
+def open_hdf5(path: Path) -> h5py.File:
+    """An HDF5 file for reading, also while a run is writing it."""
+    if not path.exists():
+        raise PostError(f"there is no file '{path}'")
+    if path.is_dir():
+        raise PostError(f"'{path}' is a folder: expected a result file")
+    try:
+        is_hdf5 = h5py.is_hdf5(path)
+        if is_hdf5:
+            return h5py.File(path, "r", locking=False)
+    except OSError as problem:
+        raise PostError(f"cannot read '{path}': {first_line(problem)}") from problem
+    raise PostError(f"'{path}' is no HDF5 file: expected a .vtkhdf file of Tessera")
+
+
+def first_line(problem: BaseException) -> str:
+    """The first line of a library's message."""
+    return (str(problem).splitlines() or [type(problem).__name__])[0]
+
+
+class Series:
+    """Points, cells and fields of every output; only what is asked for is read.
+
+    times    (n_steps) total times of the outputs
+    note     text, empty if the file is complete
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.file = open_hdf5(path)
+        self.note = ""
+        try:
+            self._grid = self.file["VTKHDF"]
+            steps = self._grid["Steps"]
+            stated = int(steps.attrs["NSteps"])
+            self._part = steps["PartOffsets"][:stated]
+            self._first_point = steps["PointOffsets"][:stated]
+            self._first_cell = steps["CellOffsets"][:stated, 0]
+            self._first_id = steps["ConnectivityIdOffsets"][:stated, 0]
+            self._n_points = self._grid["NumberOfPoints"][()]
+            self._n_cells = self._grid["NumberOfCells"][()]
+            self._offset = {
+                name: offsets[:stated]
+                for kind in ("PointDataOffsets", "CellDataOffsets")
+                for name, offsets in steps[kind].items()
+            }
+            self.point_fields = list(self._grid["PointData"])
+            self.cell_fields = list(self._grid["CellData"])
+            values = steps["Values"][:stated]
+        except (KeyError, OSError, RuntimeError) as problem:
+            self.file.close()
+            raise PostError(
+                f"'{path}' is no result of Tessera, or was never finished: {first_line(problem)}"
+            ) from problem
+        self.n_steps = self._complete_steps(stated)
+        self.times = values[: self.n_steps]
+        if self.n_steps < stated:
+            self.note = f"'{path.name}': the last {stated - self.n_steps} outputs are incomplete"
+        if self.n_steps == 0:
+            self.file.close()
+            raise PostError(f"'{path}' holds no output yet")
+
+    def _complete_steps(self, stated: int) -> int:
+        """Steps of which every dataset holds all rows: a kill may cut the last one."""
+        columns = [self._part, self._first_point, self._first_cell, *self._offset.values()]
+        n = min(stated, *(len(column) for column in columns))
+        while n > 0 and not self._is_complete(n - 1):
+            n -= 1
+        return n
+
+    def _is_complete(self, step: int) -> bool:
+        part = self._part[step]
+        if part >= min(len(self._n_points), len(self._n_cells)):
+            return False
+        if self._first_point[step] + self._n_points[part] > len(self._grid["Points"]):
+            return False
+        return all(
+            self._offset[name][step] + self._rows(name, step) <= len(self._dataset(name))
+            for name in (*self.point_fields, *self.cell_fields)
+        )
+
+    def _rows(self, name: str, step: int) -> int:
+        count = self._n_points if name in self.point_fields else self._n_cells
+        return int(count[self._part[step]])
+
+    def _dataset(self, name: str) -> h5py.Dataset:
+        return self._grid["PointData" if name in self.point_fields else "CellData"][name]
+
+    @property
+    def field_names(self) -> list[str]:
+        """Names of all fields, those of points first."""
+        return [*self.point_fields, *self.cell_fields]
+
+    def n_points(self, step: int) -> int:
+        """Number of points of an output."""
+        return int(self._n_points[self._part[step]])
+
+    def points(self, step: int) -> np.ndarray:
+        """(n_points, 3) positions at an output [length]."""
+        first = int(self._first_point[step])
+        return self._read(self._grid["Points"], first, self.n_points(step))
+
+    def field(self, name: str, step: int) -> np.ndarray:
+        """(rows) or (rows, components) of a field at an output."""
+        if name not in self._offset:
+            raise PostError(
+                f"'{self.path.name}' has no field '{name}': there are {one_of(self.field_names)}"
+            )
+        first = int(self._offset[name][step])
+        return self._read(self._dataset(name), first, self._rows(name, step))
+
+    def cells(self, step: int = 0) -> np.ndarray:
+        """(n_cells, nodes per cell) point numbers of the cells, from 0; all cells are alike."""
+        part = self._part[step]
+        count = int(self._grid["NumberOfConnectivityIds"][part])
+        ids = self._read(self._grid["Connectivity"], int(self._first_id[step]), count)
+        return ids.reshape(int(self._n_cells[part]), -1)
+
+    @property
+    def cell_type(self) -> int:
+        """VTK's number of the type of all cells."""
+        return int(self._grid["Types"][0])
+
+    def _read(self, dataset: h5py.Dataset, first: int, count: int) -> np.ndarray:
+        try:
+            return dataset[first : first + count]
+        except (OSError, RuntimeError) as problem:
+            raise PostError(f"cannot read '{self.path}': {first_line(problem)}") from problem
+
+    def close(self) -> None:
+        """Closes the file."""
+        self.file.close()
