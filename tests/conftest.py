@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
+pytest_plugins = ["post_runs"]  # results for the tests of tessera-post
 
 
 @dataclass

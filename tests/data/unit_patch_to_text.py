@@ -26,8 +26,14 @@ def rows(array):
 
 def write_case(case, out):
     """Write one case: sizes, then each array item by item."""
-    print(case["nd"], METHODS[case["method"]], len(case["nodes"]), len(case["linear_elements"]),
-          len(case["point_x"]), file=out)
+    print(
+        case["nd"],
+        METHODS[case["method"]],
+        len(case["nodes"]),
+        len(case["linear_elements"]),
+        len(case["point_x"]),
+        file=out,
+    )
     print(case["E"], case["nu"], case["sigma_y"] or -1.0, file=out)
     arrays = (
         case["nodes"],
