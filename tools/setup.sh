@@ -3,7 +3,8 @@
 #   Debian packages    compiler, CMake and libraries
 #   .venv              a Python environment with the packages of the groups named
 #
-#   sh tools/setup.sh [GROUP...]      groups: plot test lint mesh (files in tools/requirements)
+#   sh tools/setup.sh [GROUP...]      groups: post test lint mesh (files in tools/requirements:
+#                                     GROUP.txt for Python, GROUP.debian for Debian)
 set -eu
 
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
@@ -24,6 +25,13 @@ as_root() {
   else
     sudo "$@"
   fi
+}
+
+add_debian_packages() {
+  for group in "$@"; do
+    list="$root/tools/requirements/$group.debian"
+    [ ! -f "$list" ] || packages="$packages $(cat "$list")"
+  done
 }
 
 install_debian_packages() {
@@ -51,7 +59,7 @@ install_debian_packages() {
   fi
 }
 
-# The stamp of a group holds the checksum of all requirement files: a second run skips the group.
+# The stamp of a group holds the checksum of all requirements: a second run skips the group.
 install_python_packages() {
   venv="$root/.venv"
   if ! "$venv/bin/python" -c "" 2>/dev/null; then
@@ -59,7 +67,7 @@ install_python_packages() {
     rm -rf "$venv"
     /usr/bin/python3 -m venv "$venv"
   fi
-  checksum=$(cat "$root"/tools/requirements/*.txt | sha256sum)
+  checksum=$(cat "$root"/tools/requirements/*.txt "$root/post/pyproject.toml" | sha256sum)
   for group in "$@"; do
     requirements="$root/tools/requirements/$group.txt"
     stamp="$venv/installed-$group"
@@ -79,6 +87,8 @@ install_python_packages() {
   done
 }
 
+cd "$root"
+add_debian_packages "$@"
 install_debian_packages
 if [ "$#" -gt 0 ]; then
   install_python_packages "$@"

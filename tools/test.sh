@@ -6,7 +6,7 @@ set -eu
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
 cd "$root"
 
-sh tools/setup.sh test
+sh tools/setup.sh post test
 
 # The program as a whole is tested with checks; what takes long or is timed, in the release build.
 cmake --preset debug -DTESSERA_WERROR=ON
