@@ -12,12 +12,14 @@ from tessera_post.cli import tell, wrote
 from tessera_post.columns import Column, default_pair, find_column, partner
 from tessera_post.errors import PostError
 from tessera_post.job import Job, open_jobs
+from tessera_post.style import COLORS, MARKERS, colors_of, distinct_labels, plt, save
 from tessera_post.units import conversion
 
 EXAMPLE = """\
   tessera-post curve footing_standard footing_fbar -y 'RF3[FOOTING]' -x 'U3[FOOTING]' \\
     --positive --x-unit mm --line 0.70 "upper bound"
 """
+NOTABLE = 1.005  # a larger value on the way, over the last one
 STILL_RISING = 0.03  # a curve that gains more over its second half has no limit
 
 
@@ -109,8 +111,6 @@ def run(options: argparse.Namespace) -> int:
     bands = [(number(a, "--band"), number(b, "--band"), label) for a, b, label in options.band]
     figure = draw(curves, lines, bands, title_of(jobs, options))
     path = options.output or jobs[0].folder / f"{jobs[0].name}_curve.png"
-    from tessera_post.style import save
-
     save(figure, path)
     for curve in curves.curve:
         print(describe(curve, curves))
@@ -171,8 +171,6 @@ def default_x(job: Job, name_y: str) -> str:
 
 def labels_of(jobs: Sequence[Job], options: argparse.Namespace) -> list[str]:
     """One label per job: those of the user, else the formulations."""
-    from tessera_post.style import distinct_labels
-
     if options.labels is None:
         return distinct_labels([job.label for job in jobs], [job.name for job in jobs])
     if len(options.labels) != len(jobs):
@@ -205,8 +203,6 @@ def draw(
     title: str,
 ) -> Figure:
     """The picture."""
-    from tessera_post.style import COLORS, MARKERS, colors_of, plt
-
     figure, axes = plt.subplots(figsize=(7.0, 4.6))
     for low, high, label in bands:
         axes.axhspan(low, high, color="0.87", zorder=0, label=label)
@@ -232,7 +228,7 @@ def describe(curve: Curve, curves: Curves) -> str:
     last = f"{y[-1]:.4g} {curves.y.unit} at {x[-1]:.4g} {curves.x.unit}"
     extreme = int(np.abs(y).argmax())
     text = f"{curve.label}: {last}"
-    if abs(y[extreme]) > abs(y[-1]) * (1.0 + 1e-12):
+    if abs(y[extreme]) > NOTABLE * abs(y[-1]):
         text += f", extreme {y[extreme]:.4g} at {x[extreme]:.4g}"
     half = value_at_half(x, y)
     if half is not None and half != 0.0:

@@ -1,10 +1,9 @@
 """From layers to images: camera, lights, off-screen rendering. All text is matplotlib's."""
 
-import ctypes.util
 import os
 from collections.abc import Sequence
+from ctypes.util import find_library
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
@@ -12,11 +11,14 @@ if not os.environ.get("DISPLAY"):  # VTK would look for a display first, and com
     os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
 
 import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkLogger
 
 from tessera_post.body import RADIUS, Layer
 from tessera_post.errors import PostError
 from tessera_post.fields import Quantity
 from tessera_post.style import ColorScale, category_shades
+
+vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
 
 VIEWS = {  # direction from the body to the camera, and what is up
     "x": ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
@@ -41,7 +43,7 @@ ambientColor *= shade;
 diffuseColor *= shade;
 """
 DARKEST = {2: 1.0, 3: 0.5}  # rim of a point over its middle: discs in 2-D, spheres in 3-D
-LIBRARIES = ("EGL", "OSMesa", "GLX")
+SOFTWARE_WINDOW = "vtkOSOpenGLRenderWindow"
 
 
 @dataclass(frozen=True)
@@ -136,24 +138,24 @@ def colors_of_layer(
     return colors.astype(np.uint8)
 
 
-@cache
-def check_libraries() -> None:
-    """Without any of OpenGL's libraries VTK would crash."""
-    if not any(ctypes.util.find_library(name) for name in LIBRARIES):
-        raise PostError(
-            "cannot draw in 3-D: expected the library EGL or OSMesa (Debian: apt-get install"
-            " libegl1 libgl1-mesa-dri)"
-        )
+def check_window(plotter: pv.Plotter) -> None:
+    """Without a library that draws off-screen VTK takes a window that crashes when it draws."""
+    if plotter.render_window.GetClassName() != SOFTWARE_WINDOW or find_library("OSMesa"):
+        return
+    raise PostError(
+        "cannot draw in 3-D: expected a display, or the library EGL or OSMesa (Debian: apt-get"
+        " install libegl1 libgl1-mesa-dri)"
+    )
 
 
 class Renderer:
     """Draws layers into images of one size; used again for frame after frame."""
 
     def __init__(self, view: View, window: Window, pixels: int) -> None:
-        check_libraries()
         scale = pixels / max(window.width, window.height)
         size = [2 * round(0.5 * scale * side) for side in (window.width, window.height)]
         self._plotter = pv.Plotter(off_screen=True, window_size=size, lighting="none")
+        check_window(self._plotter)
         self._plotter.render_window.SetMultiSamples(0)  # the picture is drawn larger than it is
         self._plotter.set_background("white")
         self._plotter.add_light(pv.Light(light_type="headlight", intensity=1.0))

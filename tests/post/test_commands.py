@@ -1,0 +1,171 @@
+"""Every command on every kind of job, and on what is no job."""
+
+import h5py
+import pytest
+from tessera_post.cli import COMMANDS, main
+from test_picture import is_blank
+
+JOBS = ("footing", "stretch", "strip-footing", "bar", "single", "killed")
+DRAWING = {
+    "curve": (["-o", "{out}.png"], ".png"),
+    "picture": (["-o", "{out}.png"], ".png"),
+    "scatter": (["-o", "{out}.png"], ".png"),
+    "deformed": (["-o", "{out}.png"], ".png"),
+    "animate": (["-q", "--every", "7", "-o", "{out}.gif"], ".gif"),
+    "report": (["-o", "{out}.html"], ".html"),
+}
+OF_JOBS = [name for name in COMMANDS if name != "paper"]
+
+
+@pytest.fixture
+def job(request, example):
+    """The job of a name: an example with F-bar patches, or a fixture."""
+
+    def path(name):
+        if name in ("bar", "single", "killed"):
+            return request.getfixturevalue(name)
+        return example(name, "fbar")
+
+    return path
+
+
+def arguments(command, job, out):
+    """A call of a command for one job."""
+    if command == "compare":
+        return ["compare", job, job]
+    if command == "export":
+        return ["export", job, "csv", "-o", f"{out}.csv"]
+    return [command, job, *(option.format(out=out) for option in DRAWING[command][0])]
+
+
+@pytest.mark.parametrize("name", JOBS)
+@pytest.mark.parametrize("command", OF_JOBS)
+def test_every_command_takes_every_job(post, job, tmp_path, command, name):
+    code, out, err = post(*arguments(command, job(name), tmp_path / "out"))
+    assert code == 0, err
+    notes = [line for line in err.splitlines() if "note:" in line]
+    assert any("has not finished" in note for note in notes) == (name == "killed")
+    if command == "compare":
+        return
+    ending = ".csv" if command == "export" else DRAWING[command][1]
+    path = tmp_path / f"out{ending}"
+    assert f"wrote {path}" in out
+    assert path.stat().st_size > 1000
+    if ending == ".png":
+        assert not is_blank(path)
+    assert [p.name for p in tmp_path.iterdir()] == [path.name]
+
+
+def foreign(folder, kind):
+    """A path that is no result of Tessera, and what is said about it."""
+    path = folder / f"{kind}.vtkhdf"
+    if kind == "text":
+        path.write_text("not HDF5\n" * 100)
+        return path, f"'{path}' is no HDF5 file: expected a .vtkhdf file of Tessera"
+    if kind == "empty":
+        path.touch()
+        return path, f"'{path}' is no HDF5 file: expected a .vtkhdf file of Tessera"
+    if kind == "hdf5":
+        with h5py.File(path, "w") as file:
+            file["numbers"] = [1, 2, 3]
+        return path, f"'{path}' is no result of Tessera, or was never finished: "
+    if kind == "folder":
+        path.mkdir()
+        return path, f"'{path}' is a folder: expected a result file"
+    return path, f"there is no file '{path}'"
+
+
+@pytest.mark.parametrize("kind", ["text", "empty", "hdf5", "folder", "missing"])
+@pytest.mark.parametrize("command", OF_JOBS)
+def test_what_is_no_job_gets_one_line(post, tmp_path, command, kind):
+    path, message = foreign(tmp_path, kind)
+    code, out, err = post(*arguments(command, path, tmp_path / "out"))
+    assert (code, out) == (2, "")
+    assert err.startswith(f"tessera-post: error: {message}")
+    assert err.count("\n") == 1
+    assert not list(tmp_path.glob("out*"))
+
+
+@pytest.mark.parametrize("command", OF_JOBS)
+def test_unknown_job_is_told_with_those_nearby(post, bar, tmp_path, command):
+    path = bar.with_name("baz")
+    code, _, err = post(*arguments(command, path, tmp_path / "out"))
+    assert code == 2
+    assert err == (
+        f"tessera-post: error: there are no results of '{path}': no file '{path}.vtkhdf';"
+        " jobs there: bar\n"
+    )
+
+
+@pytest.mark.parametrize("command", ["picture", "scatter", "deformed", "animate", "report"])
+def test_missing_field_is_told_with_those_there_are(post, example, tmp_path, command):
+    job = example("strip-footing", "fbar")
+    code, out, err = post(*arguments(command, job, tmp_path / "out"), "--field", "JBAR")
+    assert (code, out) == (2, "")
+    assert err.splitlines()[-1].startswith(
+        "tessera-post: error: 'strip-footing_fbar.vtkhdf' has no field 'JBAR': there are ID, "
+        "LE11..LE33, LE:norm"
+    )
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_has_an_example(post, command):
+    code, out, _ = post(command, "--help")
+    assert code == 0
+    assert f"usage: tessera-post {command}" in out
+    example = out[out.index("example:\n") :].splitlines()[1]
+    assert example.startswith(f"  tessera-post {command}")
+
+
+def test_help_lists_the_commands(post):
+    code, out, _ = post("--help")
+    assert code == 0
+    for name, text in COMMANDS.items():
+        assert f"{name:<10} {text}" in out
+    code, _, err = post("draw")
+    assert code == 2
+    assert "invalid choice: 'draw'" in err
+    assert post()[0] == 2
+
+
+@pytest.mark.parametrize("command", ["curve", "picture", "scatter", "deformed"])
+def test_picture_goes_beside_the_results(post, single, command):
+    code, out, _ = post(command, single)
+    path = single.with_name(f"bar_{command}.png")
+    assert (code, path.is_file()) == (0, True)
+    assert f"wrote {path}\n" in out
+
+
+def test_folder_that_is_not_there_gets_one_line(post, bar, tmp_path):
+    for command in ("curve", "picture", "scatter", "deformed", "report"):
+        call = arguments(command, bar, tmp_path / "missing" / "out")
+        code, _, err = post(*call)
+        assert code == 2
+        assert err.endswith("No such file or directory\n")
+        assert err.count("\n") == 1
+        assert str(tmp_path / "missing") in err
+
+
+def test_job_without_mesh_file_is_drawn_with_a_note(post, run_deck, tmp_path):
+    from post_runs import bar_deck
+
+    job = run_deck(tmp_path, bar_deck())
+    job.with_name("bar_mesh.vtkhdf").unlink()
+    code, _, err = post("picture", job)
+    assert code == 0
+    assert "note: 'bar_mesh.vtkhdf' cannot be read: drawn without the mesh" in err
+    code, _, err = post("picture", job, "--as", "elements")
+    assert code == 2
+    assert err.splitlines()[-1].endswith("bar_mesh.vtkhdf' cannot be read")
+    for command in ("scatter", "deformed", "animate", "report"):
+        assert post(*arguments(command, job, tmp_path / command))[0] == 0
+
+
+def test_interrupt_ends_with_one_line(monkeypatch, capsys, bar):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tessera_post.curve.collect", interrupt)
+    assert main(["curve", str(bar)]) == 130
+    assert capsys.readouterr().err == "tessera-post: error: interrupted\n"
