@@ -54,6 +54,16 @@ FIGURES = (
         ),
     ),
     PaperFigure(
+        "strip_footing_strain.png",
+        "strip-footing",
+        "picture",
+        BOTH,
+        (
+            *("--field", "PEEQ", "--as", "elements"),
+            *("--clip", "x<1.5", "--clip", "y>4", "--range", "0", "0.02"),
+        ),
+    ),
+    PaperFigure(
         "stretch_deformed.png",
         "stretch",
         "deformed",

@@ -1,6 +1,7 @@
 """The figures of the documentation."""
 
 import pytest
+from post_runs import bar_deck
 from tessera_post.paper import FIGURES, find_program
 from test_picture import is_blank
 
@@ -39,20 +40,25 @@ S, ELEMENT
 
 def test_figures_are_drawn_from_finished_runs(post, example, tmp_path):
     results = example("footing", "fbar").parent.parent
-    example("stretch", "fbar")
+    for name in ("stretch", "strip-footing"):
+        example(name, "fbar")
     code, out, err = post("paper", "--results", results, "-o", tmp_path)
     assert (code, err) == (0, "")
     for figure in FIGURES:
         assert f"wrote {tmp_path / figure.name}" in out
         assert not is_blank(tmp_path / figure.name)
-    assert len(list(tmp_path.iterdir())) == len(FIGURES) == 4
+    assert len(list(tmp_path.iterdir())) == len(FIGURES) == 5
 
 
 def test_examples_are_run_first(post, tessera_release, tmp_path):
     from conftest import ROOT
 
-    stretch = (ROOT / "input" / "stretch" / "stretch.inp").read_text()
-    for name, deck in (("footing", FOOTING), ("stretch", stretch)):
+    decks = {
+        "footing": FOOTING,
+        "stretch": (ROOT / "input" / "stretch" / "stretch.inp").read_text(),
+        "strip-footing": bar_deck().replace("X, 0, 4, 4\nY, 0, 1, 1", "X, 0, 4, 4\nY, 0, 5, 5"),
+    }
+    for name, deck in decks.items():
         (tmp_path / name).mkdir()
         (tmp_path / name / f"{name}.inp").write_text(deck)
     output = tmp_path / "figures"
@@ -60,7 +66,7 @@ def test_examples_are_run_first(post, tessera_release, tmp_path):
     options = ["--examples", tmp_path, "--tessera", tessera_release, "-o", output]
     code, out, err = post("paper", *options)
     assert (code, err) == (0, "")
-    assert out.count("running ") == 2
+    assert out.count("running ") == 3
     assert len(list(output.iterdir())) == len(FIGURES)
     assert not list((tmp_path / "stretch").glob("*.vtkhdf"))
 
