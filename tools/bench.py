@@ -1,9 +1,10 @@
-"""Measures the footing and the location of points with the programs in build/bench.
+"""Measures the footing, the location of points and tessera-post with the programs in build/bench.
 
     tools/bench [--runs N]
 
 Times are CPU times of one thread: of the footing, over its plastic increments, per point and Newton
-iteration; medians of N runs. Prints ok or FAILED behind each limit; exit code 1 when one is passed.
+iteration; medians of N runs. Of tessera-post, wall time and memory. Prints ok or FAILED behind each
+limit; exit code 1 when one is passed.
 """
 
 import argparse
@@ -15,6 +16,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+from bench_post import bench_post
 
 ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build" / "bench"
@@ -152,7 +154,11 @@ def main():
     if n_runs < 1:
         parser.error("--runs: expected at least 1")
     print(f"processor: {processor()}, one thread")
-    ok = [bench_footing(n_runs), bench_location(n_runs)]
+    ok = [
+        bench_footing(n_runs),
+        bench_location(n_runs),
+        bench_post(n_runs, BUILD / "bin" / "tessera", ROOT, environment()),
+    ]
     return 0 if all(ok) else 1
 
 
