@@ -81,17 +81,21 @@ def single(run_deck, tmp_path_factory):
     return run_deck(tmp_path_factory.mktemp("single"), bar_deck(size=1.0))
 
 
-@pytest.fixture(scope="session")
-def killed(tessera_release, tmp_path_factory):
-    """The bar, killed after some increments of 2,000."""
-    folder = tmp_path_factory.mktemp("killed")
+def run_and_kill(program, folder, after):
+    """Kills the bar, which has 2,000 increments, after some; the path of the job."""
     (folder / "bar.inp").write_text(bar_deck(inc=2000, size=5e-4), encoding="utf-8")
     status = folder / "bar.sta"
-    with subprocess.Popen([str(tessera_release), "-q", "bar.inp"], cwd=folder) as process:
-        while not status.exists() or status.read_text().count("\n") < 12:
+    with subprocess.Popen([str(program), "-q", "bar.inp"], cwd=folder) as process:
+        while not status.exists() or status.read_text().count("\n") < after:
             assert process.poll() is None
         process.kill()
     return folder / "bar"
+
+
+@pytest.fixture(scope="session")
+def killed(tessera_release, tmp_path_factory):
+    """The bar, killed after some increments of 2,000."""
+    return run_and_kill(tessera_release, tmp_path_factory.mktemp("killed"), after=12)
 
 
 @pytest.fixture(scope="session")

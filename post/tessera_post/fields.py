@@ -164,7 +164,7 @@ def quantities_of(fields: Iterable[str]) -> list[str]:
     names = []
     for field in fields:
         if field in TENSORS:
-            names += [f"{field}11..{field}13", *(f"{field}:{i.lower()}" for i in INVARIANTS)]
+            names += [f"{field}11..{field}33", *(f"{field}:{i.lower()}" for i in INVARIANTS)]
         elif field in VECTORS:
             names += [field, f"{field}1..{field}3"]
         elif field == "F":

@@ -9,7 +9,7 @@ import numpy as np
 from tessera_post.errors import PostError, one_of
 from tessera_post.fields import Quantity, find_quantity
 from tessera_post.log import Log, read_log
-from tessera_post.series import VTK_TRIANGLE, Series, first_line
+from tessera_post.series import UNREADABLE, VTK_TRIANGLE, Series, first_line
 from tessera_post.units import Units
 
 FORMULATIONS = {"standard": "standard MPM", "fbar": "F-bar patch"}
@@ -48,7 +48,7 @@ class Job:
         """Columns of a table, cut to the rows that all of them have."""
         try:
             columns = {key: column[()] for key, column in self._tables[name].items()}
-        except (KeyError, OSError, RuntimeError) as problem:
+        except UNREADABLE as problem:
             raise PostError(
                 f"'{self.path}': cannot read /tessera/{name}: {first_line(problem)}"
             ) from problem
@@ -58,7 +58,10 @@ class Job:
     @cached_property
     def history(self) -> dict[str, np.ndarray]:
         """Columns of *HISTORY by name; row 0 is the state before loading."""
-        return self._table("history")
+        history = self._table("history")
+        if "time" not in history:
+            raise PostError(f"'{self.path}': /tessera/history has no column 'time'")
+        return history
 
     @cached_property
     def iterations(self) -> dict[str, np.ndarray]:
@@ -86,7 +89,7 @@ class Job:
         return self._scalar("deck_name").decode(errors="replace")
 
     def _scalar(self, name: str) -> bytes:
-        dataset = self._tables[name]
+        dataset = self._tables.get(name)
         if not isinstance(dataset, h5py.Dataset) or dataset.shape != ():
             raise PostError(f"'{self.path}': /tessera/{name} is no text")
         return bytes(dataset[()])
@@ -124,9 +127,9 @@ class Job:
         """Text of *HEADING, empty without one."""
         lines = self.deck.decode(errors="replace").splitlines()
         for i, line in enumerate(lines):
-            if line.strip().upper() == "*HEADING":
+            if line.partition(" **")[0].strip().upper() == "*HEADING":
                 rest = (text.strip() for text in lines[i + 1 :])
-                return next((text for text in rest if text), "")
+                return next((text for text in rest if text and not text.startswith("**")), "")
         return ""
 
     @property

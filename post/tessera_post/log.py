@@ -70,11 +70,14 @@ def read_log(path: Path) -> Log | None:
 
 
 def parse_log(text: str) -> Log:
-    """Parses a log that may end anywhere."""
+    """Parses a log that may end anywhere, a last line without its end left out."""
     log = Log()
-    body = text[text.rfind("\nend of deck\n") + 1 :]
+    text = text[: text.rfind("\n") + 1]
+    _, deck_ended, body = text.rpartition("\nend of deck\n")
+    if not deck_ended:
+        return log
     body, _, summary = body.partition("\nsummary\n")
-    for block in re.split(r"\n\s*\n", body.removeprefix("end of deck\n")):
+    for block in re.split(r"\n\s*\n", body):
         parse_block(log, block.strip("\n").splitlines())
     log.attempts, log.messages = parse_attempts(body.splitlines())
     for line in summary.splitlines():
@@ -84,7 +87,7 @@ def parse_log(text: str) -> Log:
             met = values.pop("verdict") == "met"
             values["found"] = values["found"].removeprefix("found ")
             log.verdicts.append(Verdict(**values, met=met))
-        elif line.startswith("exit code: "):
+        elif re.fullmatch(r"exit code: \d+", line):
             log.exit_code = int(line.split()[-1])
         elif line.strip():
             log.summary.append(line.strip())

@@ -9,6 +9,17 @@ from tessera_post.errors import PostError, one_of
 
 VTK_TRIANGLE = 5
 
+# What h5py raises where a file is damaged, or holds something else than we look for.
+UNREADABLE = (
+    AttributeError,
+    IndexError,
+    KeyError,
+    OSError,
+    RuntimeError,
+    TypeError,
+    ValueError,
+)
+
 
 def open_hdf5(path: Path) -> h5py.File:
     """An HDF5 file for reading, also while a run is writing it."""
@@ -51,6 +62,8 @@ class Series:
             self._first_id = steps["ConnectivityIdOffsets"][:stated, 0]
             self._n_points = self._grid["NumberOfPoints"][()]
             self._n_cells = self._grid["NumberOfCells"][()]
+            self._n_ids = self._grid["NumberOfConnectivityIds"][()]
+            self._types = self._grid["Types"]
             self._offset = {
                 name: offsets[:stated]
                 for kind in ("PointDataOffsets", "CellDataOffsets")
@@ -58,14 +71,14 @@ class Series:
             }
             self.point_fields = list(self._grid["PointData"])
             self.cell_fields = list(self._grid["CellData"])
-            values = steps["Values"][:stated]
-        except (KeyError, OSError, RuntimeError) as problem:
+            self.times = steps["Values"][:stated]
+            self.n_steps = self._complete_steps(stated)
+        except UNREADABLE as problem:
             self.file.close()
             raise PostError(
                 f"'{path}' is no result of Tessera, or was never finished: {first_line(problem)}"
             ) from problem
-        self.n_steps = self._complete_steps(stated)
-        self.times = values[: self.n_steps]
+        self.times = self.times[: self.n_steps]
         if self.n_steps < stated:
             self.note = f"'{path.name}': the last {stated - self.n_steps} outputs are incomplete"
         if self.n_steps == 0:
@@ -74,17 +87,19 @@ class Series:
 
     def _complete_steps(self, stated: int) -> int:
         """Steps of which every dataset holds all rows: a kill may cut the last one."""
-        columns = [self._part, self._first_point, self._first_cell, *self._offset.values()]
-        n = min(stated, *(len(column) for column in columns))
+        columns = [self.times, self._part, self._first_point, self._first_cell, self._first_id]
+        n = min(stated, *(len(column) for column in (*columns, *self._offset.values())))
         while n > 0 and not self._is_complete(n - 1):
             n -= 1
         return n
 
     def _is_complete(self, step: int) -> bool:
         part = self._part[step]
-        if part >= min(len(self._n_points), len(self._n_cells)):
+        if part >= min(len(self._n_points), len(self._n_cells), len(self._n_ids)):
             return False
         if self._first_point[step] + self._n_points[part] > len(self._grid["Points"]):
+            return False
+        if self._first_id[step] + self._n_ids[part] > len(self._grid["Connectivity"]):
             return False
         return all(
             self._offset[name][step] + self._rows(name, step) <= len(self._dataset(name))
@@ -124,19 +139,22 @@ class Series:
     def cells(self, step: int = 0) -> np.ndarray:
         """(n_cells, nodes per cell) point numbers of the cells, from 0; all cells are alike."""
         part = self._part[step]
-        count = int(self._grid["NumberOfConnectivityIds"][part])
-        ids = self._read(self._grid["Connectivity"], int(self._first_id[step]), count)
-        return ids.reshape(int(self._n_cells[part]), -1)
+        n_cells, n_ids = int(self._n_cells[part]), int(self._n_ids[part])
+        ids = self._read(self._grid["Connectivity"], int(self._first_id[step]), n_ids)
+        n_corners = max(n_ids // max(n_cells, 1), 1)
+        if n_corners * n_cells != n_ids:
+            raise PostError(f"'{self.path}' has cells of several types: expected one type")
+        return ids.reshape(n_cells, n_corners)
 
     @property
     def cell_type(self) -> int:
         """VTK's number of the type of all cells."""
-        return int(self._grid["Types"][0])
+        return int(self._read(self._types, 0, 1)[0])
 
     def _read(self, dataset: h5py.Dataset, first: int, count: int) -> np.ndarray:
         try:
             return dataset[first : first + count]
-        except (OSError, RuntimeError) as problem:
+        except UNREADABLE as problem:
             raise PostError(f"cannot read '{self.path}': {first_line(problem)}") from problem
 
     def close(self) -> None:
