@@ -212,6 +212,8 @@ def make_layers(frame: Frame, what: str, quantity: Quantity | None) -> list[Laye
         body = elements(frame, quantity)
     else:
         body = mesh_surface(frame, quantity)
-    if body.data.n_points == 0:
-        raise PostError(f"'{frame.job.name}': the planes of --clip leave nothing")
-    return [body] if frame.job.mesh is None else [body, outline(frame)]
+    layers = [body] if frame.job.mesh is None else [body, outline(frame)]
+    if body.data.n_points == 0 and (frame.clips or len(layers) == 1):
+        why = "the planes of --clip leave nothing" if frame.clips else "there are no points left"
+        raise PostError(f"'{frame.job.name}': {why}")
+    return layers

@@ -147,11 +147,15 @@ def draw_one(axes: Axes, scatter: Scatter, color: str) -> None:
 
 
 def describe(scatter: Scatter, unit: str) -> str:
-    """Statistics of the last output."""
+    """Statistics of the last output that has points."""
+    there = np.flatnonzero(np.isfinite(scatter.mean))
+    if len(there) == 0:
+        return f"{scatter.label}: no points"
     low, mean, high, deviation = (
-        values[-1] for values in (scatter.low, scatter.mean, scatter.high, scatter.deviation)
+        values[there[-1]] for values in (scatter.low, scatter.mean, scatter.high, scatter.deviation)
     )
+    when = "at the end" if there[-1] == len(scatter.mean) - 1 else f"at {scatter.x[there[-1]]:g}"
     return (
-        f"{scatter.label}: at the end mean {mean:.6g}, standard deviation {deviation:.4g},"
+        f"{scatter.label}: {when} mean {mean:.6g}, standard deviation {deviation:.4g},"
         f" min {low:.6g}, max {high:.6g} {unit}"
     )

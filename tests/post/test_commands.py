@@ -5,6 +5,7 @@ import pytest
 from tessera_post.cli import COMMANDS, main
 from test_picture import is_blank
 
+pytest_plugins = ["lost_point_runs"]
 JOBS = ("footing", "stretch", "strip-footing", "bar", "single", "killed")
 DRAWING = {
     "curve": (["-o", "{out}.png"], ".png"),
@@ -169,3 +170,12 @@ def test_interrupt_ends_with_one_line(monkeypatch, capsys, bar):
     monkeypatch.setattr("tessera_post.curve.collect", interrupt)
     assert main(["curve", str(bar)]) == 130
     assert capsys.readouterr().err == "tessera-post: error: interrupted\n"
+
+
+@pytest.mark.parametrize("command", DRAWING)
+def test_outputs_without_points_are_drawn(post, emptied, tmp_path, command):
+    code, out, err = post(*arguments(command, emptied, tmp_path / "out"))
+    assert code == 0, err
+    assert "nan" not in out
+    (path,) = tmp_path.iterdir()
+    assert path.stat().st_size > 1000
