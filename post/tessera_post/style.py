@@ -29,6 +29,7 @@ plt.rcParams.update(
         "axes.grid": True,
         "grid.alpha": 0.3,
         "legend.framealpha": 0.9,
+        "text.parse_math": False,  # a name with dollar signs is a name
         "savefig.dpi": 150,
         "figure.constrained_layout.use": True,
     }

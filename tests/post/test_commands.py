@@ -2,6 +2,7 @@
 
 import h5py
 import pytest
+from post_runs import bar_deck
 from tessera_post.cli import COMMANDS, main
 from test_picture import is_blank
 
@@ -149,8 +150,6 @@ def test_folder_that_is_not_there_gets_one_line(post, bar, tmp_path):
 
 
 def test_job_without_mesh_file_is_drawn_with_a_note(post, run_deck, tmp_path):
-    from post_runs import bar_deck
-
     job = run_deck(tmp_path, bar_deck())
     job.with_name("bar_mesh.vtkhdf").unlink()
     code, _, err = post("picture", job)
@@ -179,3 +178,12 @@ def test_outputs_without_points_are_drawn(post, emptied, tmp_path, command):
     assert "nan" not in out
     (path,) = tmp_path.iterdir()
     assert path.stat().st_size > 1000
+
+
+@pytest.mark.parametrize("command", DRAWING)
+def test_strange_names_are_no_formulas(post, run_deck, tmp_path, command):
+    """What a deck may call its units and sets must not be taken for mathematics."""
+    deck = bar_deck(heading=r"$\frac$ {x} %s").replace("LENGTH=m", 'LENGTH="$\\frac$"')
+    job = run_deck(tmp_path, deck, name="it's a $job$ {}")
+    code, _, err = post(*arguments(command, job, tmp_path / "out"))
+    assert (code, "rror" in err) == (0, False), err

@@ -3,10 +3,8 @@
 import base64
 import hashlib
 import io
-import json
 import re
 import shutil
-from html.parser import HTMLParser
 
 import h5py
 import numpy as np
@@ -14,7 +12,9 @@ import pytest
 from matplotlib.image import imread
 from post_runs import bar_deck
 from pygments.token import Comment, Keyword, Name, Number, String
+from report_page import Page, decode
 from tessera_post import report_scene
+from tessera_post.cli import main
 from tessera_post.deck_lexer import DeckLexer
 from tessera_post.report_attempts import find_reference
 
@@ -23,90 +23,6 @@ EXPECT = """\
 analytic, 20.0, 0.2
 frozen, 1.0, 1e-6"""
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>"
-
-
-class Page(HTMLParser):
-    """What a browser would see of a page: text, tables, scripts, links."""
-
-    def __init__(self, text):
-        super().__init__()
-        self.source = text
-        self.scripts = []  # (id, type, text)
-        self.links = []
-        self.tables = []
-        self.parts = []  # (id of the section, text)
-        self.handlers = []
-        self.deck = ""
-        self._where, self._script, self._pre, self._number = "", None, False, False
-        self.feed(text)
-
-    def handle_starttag(self, tag, attrs):
-        attrs = dict(attrs)
-        self.handlers += [name for name in attrs if name.startswith("on")]
-        self.links += [attrs[name] for name in ("src", "href") if name in attrs]
-        self._where = attrs.get("id", "") if tag == "section" else self._where
-        if tag == "script":
-            self._script = [attrs.get("id", ""), attrs.get("type", ""), ""]
-        elif tag == "meta" and "http-equiv" in attrs:
-            self.policy = attrs["content"]
-        elif tag == "table":
-            self.tables.append((self._where, []))
-        elif tag == "tr":
-            self.tables[-1][1].append([])
-        elif tag in ("td", "th"):
-            self.tables[-1][1][-1].append("")
-        elif tag == "pre":
-            self._pre = self._where == "deck"
-        elif tag == "span":
-            self._number = attrs.get("class") == "linenos"
-
-    def handle_endtag(self, tag):
-        if tag == "script":
-            self.scripts.append(tuple(self._script))
-            self._script = None
-        elif tag == "pre":
-            self._pre = False
-        elif tag == "span":
-            self._number = False
-
-    def handle_data(self, data):
-        if self._script is not None:
-            self._script[2] += data
-            return
-        if self._pre and not self._number:
-            self.deck += data
-        if self.tables and self.tables[-1][1] and data.strip():
-            row = self.tables[-1][1][-1]
-            if row:
-                row[-1] += data.strip()
-        self.parts.append((self._where, data))
-
-    def text(self, section=None):
-        """Text of a section, or of the whole page."""
-        parts = [data for where, data in self.parts if section in (None, where)]
-        return re.sub(r"\s+", " ", " ".join(parts))
-
-    def table(self, section, index=0):
-        """Rows of a table of a section."""
-        return [rows for where, rows in self.tables if where == section][index]
-
-    def figure(self, name):
-        """The data that plotly gets."""
-        (found,) = [text for one, _, text in self.scripts if one == f"data-{name}"]
-        return json.loads(found)
-
-    def trace(self, name, index=0):
-        """A trace with its arrays."""
-        return decode(self.figure(name)["data"][index])
-
-
-def decode(node):
-    """Arrays of plotly, which are in base64."""
-    if isinstance(node, dict):
-        if set(node) >= {"dtype", "bdata"}:
-            return np.frombuffer(base64.b64decode(node["bdata"]), dtype=node["dtype"])
-        return {key: decode(value) for key, value in node.items()}
-    return [decode(value) for value in node] if isinstance(node, list) else node
 
 
 def file_of(job):
@@ -144,6 +60,14 @@ def report(post, tmp_path):
     return make
 
 
+@pytest.fixture(scope="module")
+def bar_page(bar, tmp_path_factory):
+    """The page of the bar, made once for the tests that only look at it."""
+    path = tmp_path_factory.mktemp("report") / "page.html"
+    assert main(["report", str(bar), "-o", str(path)]) == 0
+    return Page(path.read_text(encoding="utf-8"))
+
+
 def test_page_lies_beside_the_results(post, bar):
     code, out, _ = post("report", bar)
     path = bar.with_name("bar_report.html")
@@ -151,48 +75,45 @@ def test_page_lies_beside_the_results(post, bar):
     assert path.stat().st_size < 8e6
 
 
-def test_reaction_curve_is_the_history(report, bar):
-    page = report(bar)
+def test_reaction_curve_is_the_history(bar_page, bar):
     with file_of(bar) as file:
         history = {name: column[()] for name, column in file["tessera/history"].items()}
-    trace = page.trace("reaction")
+    trace = bar_page.trace("reaction")
     np.testing.assert_array_equal(trace["x"], history["U1[X1]"])
     np.testing.assert_array_equal(trace["y"], history["RF1[X1]"])
     assert "RF1[X1] = %{y:.6~g} kN/m<br>U1[X1] = %{x:.6~g} m<br>" in trace["hovertemplate"]
-    layout = page.figure("reaction")["layout"]
+    layout = bar_page.figure("reaction")["layout"]
     assert layout["xaxis"]["title"]["text"] == "displacement 1 of X1 [m]"
     assert layout["yaxis"]["title"]["text"] == "reaction 1 of X1 [kN/m]"
-    for trace in decode(page.figure("history-force")["data"]):
+    for trace in decode(bar_page.figure("history-force")["data"]):
         np.testing.assert_array_equal(trace["x"], history["time"])
         np.testing.assert_array_equal(trace["y"], history[trace["name"]])
-    names = {trace["name"] for trace in page.figure("history-length")["data"]}
+    names = {trace["name"] for trace in bar_page.figure("history-length")["data"]}
     assert names == {"U1[X1]", "U2[X1]"}
 
 
-def test_convergence_plot_holds_every_positive_residual(report, bar):
-    page = report(bar)
+def test_convergence_plot_holds_every_positive_residual(bar_page, bar):
     with file_of(bar) as file:
         table = {name: column[()] for name, column in file["tessera/iterations"].items()}
-    lines = [t for t in decode(page.figure("convergence")["data"]) if t.get("text")]
+    lines = [t for t in decode(bar_page.figure("convergence")["data"]) if t.get("text")]
     assert len(lines) == 4
     shown = np.concatenate([line["y"] for line in lines])
     np.testing.assert_array_equal(shown, table["residual"][table["residual"] > 0.0])
-    names = [t.get("name") for t in page.figure("convergence")["data"] if t.get("name")]
+    names = [t.get("name") for t in bar_page.figure("convergence")["data"] if t.get("name")]
     assert names == ["order 2: r → C r²", "tolerance of Newton's method"]
-    assert page.figure("convergence")["layout"]["yaxis"]["type"] == "log"
+    assert bar_page.figure("convergence")["layout"]["yaxis"]["type"] == "log"
 
 
-def test_dashed_curve_and_slope_are_of_order_two(report, bar):
-    page = report(bar)
+def test_dashed_curve_and_slope_are_of_order_two(bar_page):
     (dashed,) = [
-        t for t in decode(page.figure("convergence")["data"]) if "order 2" in t.get("name", "")
+        t for t in decode(bar_page.figure("convergence")["data"]) if "order 2" in t.get("name", "")
     ]
     at = dict(zip(np.round(dashed["x"], 6), dashed["y"]))
     whole = [k for k in range(8) if k in at and k + 1 in at and k + 2 in at]
     assert whole
     for k in whole:  # r(k+1) = C r(k)^2 with the same C
         assert at[k + 2] / at[k + 1] ** 2 == pytest.approx(at[k + 1] / at[k] ** 2)
-    slopes = {t["name"]: t for t in decode(page.figure("order")["data"]) if t.get("name")}
+    slopes = {t["name"]: t for t in decode(bar_page.figure("order")["data"]) if t.get("name")}
     for name, slope in (("slope 1", 1.0), ("slope 2", 2.0)):
         x, y = np.log(slopes[name]["x"]), np.log(slopes[name]["y"])
         assert (y[1] - y[0]) / (x[1] - x[0]) == pytest.approx(slope)
@@ -202,8 +123,8 @@ def test_without_attempts_there_is_no_reference():
     assert find_reference([]) is None
 
 
-def test_cost_table_adds_up(report, bar):
-    head, *rows, foot = report(bar).table("newton")
+def test_cost_table_adds_up(bar_page, bar):
+    head, *rows, foot = bar_page.table("newton")
     assert head[3:6] == ["iterations", "residual", "kinematics [s]"]
     assert head[-1] == "outcome"
     with file_of(bar) as file:
@@ -221,8 +142,8 @@ def test_cost_table_adds_up(report, bar):
     np.testing.assert_allclose(found, [*expected, sum(expected)], atol=6e-4)
 
 
-def test_ledger_is_that_of_the_file(report, bar):
-    head, *rows, foot = report(bar).table("ledger")
+def test_ledger_is_that_of_the_file(bar_page, bar):
+    head, *rows, foot = bar_page.table("ledger")
     with file_of(bar) as file:
         ledger = {name: column[()] for name, column in file["tessera/ledger"].items()}
     assert head[3:] == ["points", "mass", "volume [m²]", "lost", "extrapolated"]
@@ -233,13 +154,12 @@ def test_ledger_is_that_of_the_file(report, bar):
     assert change == pytest.approx(ledger["volume"][-1] - ledger["volume"][0], rel=1e-6)
 
 
-def test_view_has_points_and_means_of_elements(report, bar):
-    page = report(bar)
+def test_view_has_points_and_means_of_elements(bar_page, bar):
     stress, x = last_output(bar, "S"), last_output(bar, "Points")
     element = last_output(bar, "ELEMENT") - 1
     volume = last_output(bar, "VOL")
     pressure = -stress[:, :3].mean(axis=1)
-    surface, points, outline = (page.trace("view", i) for i in range(3))
+    surface, points, outline = (bar_page.trace("view", i) for i in range(3))
     np.testing.assert_array_equal(points["marker"]["color"], pressure.astype("f4"))
     np.testing.assert_array_equal(
         np.stack([points["x"], points["y"], points["z"]], 1), x.astype("f4")
@@ -248,7 +168,7 @@ def test_view_has_points_and_means_of_elements(report, bar):
     np.testing.assert_allclose(np.sort(surface["intensity"]), np.sort(mean), rtol=1e-6)
     assert len(surface["i"]) == len(np.unique(element)) == 32
     assert outline["mode"] == "lines"
-    layout = page.figure("view")["layout"]
+    layout = bar_page.figure("view")["layout"]
     assert layout["scene"]["xaxis"]["title"]["text"] == "x [m]"
     assert layout["coloraxis"]["colorbar"]["title"]["text"] == "pressure [kPa]"
     assert layout["scene"]["camera"]["projection"]["type"] == "orthographic"
@@ -256,8 +176,8 @@ def test_view_has_points_and_means_of_elements(report, bar):
     assert labels == ["surface", "points"]
 
 
-def test_axes_of_the_view_have_one_scale(report, bar):
-    scene = report(bar).figure("view")["layout"]["scene"]
+def test_axes_of_the_view_have_one_scale(bar_page):
+    scene = bar_page.figure("view")["layout"]["scene"]
     sides = [np.ptp(scene[f"{name}axis"]["range"]) for name in "xyz"]
     ratio = [scene["aspectratio"][name] for name in "xyz"]
     np.testing.assert_allclose(np.array(ratio) / ratio[0], np.array(sides) / sides[0])
@@ -289,25 +209,23 @@ def test_view_can_be_left_out(report, bar):
     assert "#turn" not in page.links
 
 
-def test_pictures_are_not_blank(report, bar):
-    pictures = [link for link in report(bar).links if link.startswith("data:image/png")]
+def test_pictures_are_not_blank(bar_page):
+    pictures = [link for link in bar_page.links if link.startswith("data:image/png")]
     assert len(pictures) == 2
     for picture in pictures:
         image = imread(io.BytesIO(base64.b64decode(picture.partition(",")[2])))
         assert image[..., :3].std() > 0.05
 
 
-def test_deck_is_shown_as_it_is(report, bar):
-    page = report(bar)
-    assert page.deck == bar.with_suffix(".inp").read_text()
-    assert '<span class="k">*HEADING</span>' in page.source
+def test_deck_is_shown_as_it_is(bar_page, bar):
+    assert bar_page.deck == bar.with_suffix(".inp").read_text()
+    assert '<span class="k">*HEADING</span>' in bar_page.source
 
 
-def test_contents_lead_to_every_section(report, bar):
-    page = report(bar)
-    anchors = [link for link in page.links if link.startswith("#")]
+def test_contents_lead_to_every_section(bar_page):
+    anchors = [link for link in bar_page.links if link.startswith("#")]
     assert len(anchors) == 9
-    assert all(f'<section id="{anchor[1:]}"' in page.source for anchor in anchors)
+    assert all(f'<section id="{anchor[1:]}"' in bar_page.source for anchor in anchors)
 
 
 def test_verdicts_and_status_are_shown(report, run_deck, tmp_path):
@@ -332,8 +250,8 @@ def test_other_formulation_has_no_verdicts(report, run_deck, tmp_path):
     assert report(job.with_name("bar_fbar")).table("verdicts")[1][0] == "met"
 
 
-def test_deck_without_expectations_is_told(report, bar):
-    assert "The deck has no *EXPECT." in report(bar).text("verdicts")
+def test_deck_without_expectations_is_told(bar_page):
+    assert "The deck has no *EXPECT." in bar_page.text("verdicts")
 
 
 def test_failed_attempts_are_listed(report, run_deck, tmp_path):
@@ -425,12 +343,13 @@ def test_hostile_text_stays_text(report, run_deck, tmp_path):
     assert "RF1[&lt;b&gt;&#37;{x}]" in names
 
 
-def test_only_the_scripts_of_the_page_may_run(report, bar):
-    page = report(bar)
-    allowed = re.search(r"script-src ([^;]*);", page.policy)[1].split()
-    hashes = [hashlib.sha256(text.encode()).digest() for _, kind, text in page.scripts if not kind]
+def test_only_the_scripts_of_the_page_may_run(bar_page):
+    allowed = re.search(r"script-src ([^;]*);", bar_page.policy)[1].split()
+    hashes = [
+        hashlib.sha256(text.encode()).digest() for _, kind, text in bar_page.scripts if not kind
+    ]
     assert allowed == [f"'sha256-{base64.b64encode(value).decode()}'" for value in hashes]
-    assert page.policy.startswith("default-src 'none';")
+    assert bar_page.policy.startswith("default-src 'none';")
 
 
 def test_lexer_tells_the_parts_of_a_deck_apart():
