@@ -13,6 +13,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
 
+pytest_plugins = ["lost_point_runs"]
 OPTIONS = (
     "--headless=new",
     "--no-sandbox",
@@ -128,8 +129,11 @@ def hover_over(driver, plot, trace, point):
     return [line.replace("−", "-") for line in lines]  # noqa: RUF001
 
 
-def test_page_loads_without_complaint_and_without_any_request(chromium, load, bar):
-    address = load(bar)
+@pytest.mark.parametrize(
+    "any_job", ["footing", "stretch", "strip-footing", "bar", "single", "killed"], indirect=True
+)
+def test_page_loads_without_complaint_and_without_any_request(chromium, load, any_job):
+    address = load(any_job)
     assert complaints(chromium) == []
     assert requests(chromium) == [address]
 
