@@ -13,8 +13,8 @@ from tqdm import tqdm
 from tessera_post.body import Frame, make_layers
 from tessera_post.cli import tell, wrote
 from tessera_post.errors import PostError
-from tessera_post.fields import Quantity
-from tessera_post.job import Job, open_jobs
+from tessera_post.job import Job, check_units, labels_of, open_jobs
+from tessera_post.output import find_output, finite
 from tessera_post.panels import Panel, Sheet, compose, pixels_of
 from tessera_post.picture import PictureOptions, add_look, find_field, options_of, title_of
 from tessera_post.scene import Renderer, Window, find_view, find_window
@@ -25,6 +25,7 @@ EXAMPLE = """\
 """
 FORMATS = (".mp4", ".gif")
 DPI = 110
+LEAST_FPS, MOST_FPS = 0.1, 100.0
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -35,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--every", type=int, default=1, metavar="N", help="only each N-th output, and the last"
     )
     parser.add_argument(
-        "--fps", type=float, default=5.0, metavar="F", help="pictures per second (default: 5)"
+        "--fps", type=finite, default=5.0, metavar="F", help="pictures per second (default: 5)"
     )
     parser.add_argument("-q", "--quiet", action="store_true", help="no progress bar")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help=".mp4 (default) or .gif")
@@ -45,14 +46,12 @@ def run(options: argparse.Namespace) -> int:
     """Makes the film."""
     if options.every < 1:
         raise PostError("--every: expected a whole number above 0")
-    if not 0.0 < options.fps <= 100.0:
-        raise PostError("--fps: expected a number above 0 and at most 100")
+    if not LEAST_FPS <= options.fps <= MOST_FPS:
+        raise PostError(f"--fps: expected a number from {LEAST_FPS:g} to {MOST_FPS:g}")
     jobs = open_jobs(options.job)
+    path = find_output(options.output, jobs[0].folder / f"{jobs[0].name}.mp4", FORMATS)
     for job in jobs:
         tell(job.notes)
-    path = options.output or jobs[0].folder / f"{jobs[0].name}.mp4"
-    if path.suffix.lower() not in FORMATS:
-        raise PostError(f"'{path}': expected a name that ends in {' or '.join(FORMATS)}")
     film = Film(jobs, options_of(options), options.every)
     bar = tqdm(film.images(), total=len(film), unit="frame", disable=options.quiet)
     write_film(path, bar, options.fps)
@@ -66,7 +65,9 @@ class Film:
     def __init__(self, jobs: Sequence[Job], look: PictureOptions, every: int) -> None:
         self._look = look
         self._rows = rows_of(jobs, look, every)
-        self._quantity = [find_field(job, look) for job in jobs]
+        check_units(jobs, ["length"])
+        self._quantity = find_field(jobs, look)
+        self._labels = labels_of(jobs)
         self._view = find_view(look.view, jobs[0].n_dim)
         window, self._scale = self._survey()
         self._window = window.zoomed(look.zoom)
@@ -80,34 +81,34 @@ class Film:
         """The window and the colour scale that hold all frames."""
         windows, ends = [], []
         for row in self._rows:
-            for frame, quantity in zip(row, self._quantity):
-                layers = make_layers(frame, self._look.what, quantity)
+            for frame in row:
+                layers = make_layers(frame, self._look.what, self._quantity)
                 bodies = [layer.data for layer in layers if layer.data.n_points > 0]
                 windows.append(find_window(bodies, self._view))
                 values = layers[0].values
                 if values is not None and np.isfinite(values).any():
                     ends.append(np.array([np.nanmin(values), np.nanmax(values)]))
-        return union(windows), make_scale(self._quantity[0], ends, self._look.limits)
+        return union(windows), make_scale(self._quantity, ends, self._look.limits)
 
     def images(self) -> Iterator[np.ndarray]:
         """(height, width, 3) pictures with even sides, as MP4 needs them."""
         pixels = pixels_of(self._window, len(self._rows[0]))
         renderer = Renderer(self._view, self._window, pixels)
-        quantity = self._quantity[0]
         sheet = Sheet(
-            self._view, self._window, self._units, quantity, self._scale, self._look.title
+            self._view, self._window, self._units, self._quantity, self._scale, self._look.title
         )
         try:
             for row in self._rows:
-                yield image_of(compose([self._panels(row, renderer, quantity)], sheet))
+                yield image_of(compose([self._panels(row, renderer)], sheet))
         finally:
             renderer.close()
 
-    def _panels(self, row: Sequence[Frame], renderer: Renderer, quantity: Quantity) -> list[Panel]:
+    def _panels(self, row: Sequence[Frame], renderer: Renderer) -> list[Panel]:
         panels = []
-        for frame, own in zip(row, self._quantity):
-            layers = make_layers(frame, self._look.what, own)
-            panels.append(Panel(title_of(frame), renderer.draw(layers, quantity, self._scale)))
+        for frame, label in zip(row, self._labels):
+            layers = make_layers(frame, self._look.what, self._quantity)
+            image = renderer.draw(layers, self._quantity, self._scale)
+            panels.append(Panel(title_of(frame, label), image))
         return panels
 
 
@@ -158,5 +159,7 @@ def write_film(path: Path, images: Iterator[np.ndarray], fps: float) -> None:
                 for image in images:
                     film.write_frame(image)
         unfinished.replace(path)
+    except OSError as problem:
+        raise PostError(f"cannot write '{path}': {problem.strerror or problem}") from problem
     finally:
         unfinished.unlink(missing_ok=True)

@@ -215,5 +215,6 @@ def make_layers(frame: Frame, what: str, quantity: Quantity | None) -> list[Laye
     layers = [body] if frame.job.mesh is None else [body, outline(frame)]
     if body.data.n_points == 0 and (frame.clips or len(layers) == 1):
         why = "the planes of --clip leave nothing" if frame.clips else "there are no points left"
-        raise PostError(f"'{frame.job.name}': {why}")
+        increment = frame.job.increments[frame.output]
+        raise PostError(f"'{frame.job.name}', increment {increment}: {why}")
     return layers

@@ -2,6 +2,7 @@
 
 import argparse
 import importlib
+import io
 import os
 import sys
 from pathlib import Path
@@ -78,6 +79,9 @@ def run_command(name: str, arguments: list[str]) -> int:
 
 def main(arguments: list[str] | None = None) -> int:
     """The program; exit code 0, 1 for runs that differ (compare), 2 for an error."""
+    for stream in (sys.stdout, sys.stderr):  # a terminal may not know a superscript
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
     options = make_parser().parse_args(arguments)
     try:
         return run_command(options.command, options.rest)

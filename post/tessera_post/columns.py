@@ -23,6 +23,7 @@ class Column:
 
     name: str  # as in the file, such as RF3[FOOTING]
     label: str  # in words
+    generic: str  # in words, without component and place
     dimension: str  # force, length, stress, number ...
     values: np.ndarray  # (n_increments + 1)
 
@@ -55,24 +56,24 @@ def make_column(job: Job, name: str) -> Column:
         values = job.history[name]
         if name == "increment":
             values = np.arange(len(values))
-        return Column(name, COUNTED[name], "number", values)
-    label, dimension = describe(name)
-    return Column(name, label, dimension, job.history[name])
+        return Column(name, COUNTED[name], COUNTED[name], "number", values)
+    return Column(name, *describe(name), job.history[name])
 
 
-def describe(name: str) -> tuple[str, str]:
-    """Label in words and dimension of a column such as RF3[FOOTING] or S11[1 2 3]."""
+def describe(name: str) -> tuple[str, str, str]:
+    """Label in words, with and without component and place, and dimension of a column such as
+    RF3[FOOTING] or S11[1 2 3]."""
     quantity, bracket, label = name.partition("[")
     where = f" of {label.removesuffix(']')}" if bracket else ""
     found = re.fullmatch(r"(RF|CF|U)([123])", quantity)
     if found:
         words, dimension = WORDS[found[1]]
-        return f"{words} {found[2]}{where}", dimension
+        return f"{words} {found[2]}{where}", words, dimension
     field = parse(quantity)
     if field is None:
-        return name, "number"
+        return name, name, "number"
     at = f" at {label.removesuffix(']')}" if bracket else ""
-    return field.label + at, field.dimension
+    return field.label + at, re.sub(r" [123]{1,2}$", "", field.label), field.dimension
 
 
 def default_pair(job: Job) -> tuple[str, str]:

@@ -20,6 +20,7 @@ from tessera_post.compare_runs import (
     select_fields,
 )
 from tessera_post.job import Job, open_job
+from tessera_post.output import finite
 
 EXAMPLE = """\
   tessera-post compare footing_fbar reference/footing_fbar
@@ -49,12 +50,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("b", metavar="B", help="the job to compare it with")
     parser.add_argument(
         "--rtol",
-        type=not_negative,
+        type=tolerance,
         default=1e-9,
         help="tolerance relative to the scale of a column or field (default 1e-9)",
     )
     parser.add_argument(
-        "--atol", type=not_negative, default=0.0, help="absolute tolerance (default 0)"
+        "--atol", type=tolerance, default=0.0, help="absolute tolerance (default 0)"
     )
     which = parser.add_mutually_exclusive_group()
     which.add_argument(
@@ -67,10 +68,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-q", "--quiet", action="store_true", help="print the last line only")
 
 
-def not_negative(text: str) -> float:
+def tolerance(text: str) -> float:
     """A tolerance."""
-    value = float(text)
-    if not 0.0 <= value < np.inf:
+    value = finite(text)
+    if value < 0.0:
         raise argparse.ArgumentTypeError(f"'{text}' is no tolerance: expected a number from 0 on")
     return value
 
@@ -112,14 +113,14 @@ def find_differences(a: Job, b: Job, options: argparse.Namespace) -> list[Differ
 
 
 def check_times(a: Job, b: Job, with_fields: bool) -> None:
-    """Raises PostError when both runs went on, but have no later time than 0 in common."""
+    """Raises PostError when they have no time but 0 in common, unless neither has a later one."""
     both = [(a.history["time"], b.history["time"])]
     if with_fields:
         both.append((a.points.times, b.points.times))
     for times_a, times_b in both:
         in_a, _ = common_times(times_a, times_b)
-        one_is_short = len(in_a) > 0 and min(len(times_a), len(times_b)) == 1
-        if one_is_short or np.any(times_a[in_a] > 0.0):
+        both_at_start = len(in_a) == len(times_a) == len(times_b) == 1
+        if both_at_start or np.any(times_a[in_a] > 0.0):
             return
     raise not_comparable(a, b, "they have no time after 0 in common")
 

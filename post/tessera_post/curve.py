@@ -11,8 +11,9 @@ from matplotlib.figure import Figure
 from tessera_post.cli import tell, wrote
 from tessera_post.columns import Column, default_pair, find_column, partner
 from tessera_post.errors import PostError
-from tessera_post.job import Job, open_jobs
-from tessera_post.style import COLORS, MARKERS, colors_of, distinct_labels, plt, save
+from tessera_post.job import Job, labels_of, open_jobs
+from tessera_post.output import PICTURES, find_output, finite
+from tessera_post.style import COLORS, MARKERS, colors_of, plt, save, shown
 from tessera_post.units import conversion
 
 EXAMPLE = """\
@@ -104,13 +105,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Draws the curves and says in words what they do."""
     jobs = open_jobs(options.job)
+    default = jobs[0].folder / f"{jobs[0].name}_curve.png"
+    path = find_output(options.output, default, PICTURES)
     for job in jobs:
         tell(job.notes)
     curves = collect(jobs, options)
     lines = [(number(value, "--line"), label) for value, label in options.line]
     bands = [(number(a, "--band"), number(b, "--band"), label) for a, b, label in options.band]
     figure = draw(curves, lines, bands, title_of(jobs, options))
-    path = options.output or jobs[0].folder / f"{jobs[0].name}_curve.png"
     save(figure, path)
     for curve in curves.curve:
         print(describe(curve, curves))
@@ -126,11 +128,11 @@ def title_of(jobs: Sequence[Job], options: argparse.Namespace) -> str:
 
 
 def number(text: str, option: str) -> float:
-    """A number of an option."""
+    """A number of an option that takes a text as well."""
     try:
-        return float(text)
-    except ValueError:
-        raise PostError(f"{option}: expected a number, found '{text}'") from None
+        return finite(text)
+    except argparse.ArgumentTypeError as problem:
+        raise PostError(f"{option}: {problem}") from None
 
 
 def collect(jobs: Sequence[Job], options: argparse.Namespace) -> Curves:
@@ -145,10 +147,10 @@ def collect(jobs: Sequence[Job], options: argparse.Namespace) -> Curves:
     x = make_axis(jobs[0], columns_x[0], options.x_unit, options.positive)
     y = make_axis(jobs[0], columns_y[0][0], options.y_unit, options.positive)
     if len(names_y) > 1:
-        y = replace(y, label=columns_y[0][0].label.partition(" of ")[0])
+        y = replace(y, label=", ".join(dict.fromkeys(c.generic for c in columns_y[0])))
     x, y = named(x, options.x_label), named(y, options.y_label)
     curves = []
-    for job, label, column_x, of_job in zip(jobs, labels_of(jobs, options), columns_x, columns_y):
+    for job, label, column_x, of_job in zip(jobs, legend_of(jobs, options), columns_x, columns_y):
         for column in of_job:
             name = f"{label}: {column.name}" if len(of_job) > 1 else label
             values = scaled(job, column_x, x), scaled(job, column, y)
@@ -169,10 +171,10 @@ def default_x(job: Job, name_y: str) -> str:
     return "time"
 
 
-def labels_of(jobs: Sequence[Job], options: argparse.Namespace) -> list[str]:
+def legend_of(jobs: Sequence[Job], options: argparse.Namespace) -> list[str]:
     """One label per job: those of the user, else the formulations."""
     if options.labels is None:
-        return distinct_labels([job.label for job in jobs], [job.name for job in jobs])
+        return labels_of(jobs)
     if len(options.labels) != len(jobs):
         raise PostError(f"--labels: expected {len(jobs)} texts, found {len(options.labels)}")
     return options.labels
@@ -205,17 +207,21 @@ def draw(
     """The picture."""
     figure, axes = plt.subplots(figsize=(7.0, 4.6))
     for low, high, label in bands:
-        axes.axhspan(low, high, color="0.87", zorder=0, label=label)
+        axes.axhspan(low, high, color="0.87", zorder=0, label=shown(label))
     colors = colors_of([curve.label for curve in curves.curve])
     for i, (curve, color) in enumerate(zip(curves.curve, colors)):
         marker = MARKERS[i % len(MARKERS)] if len(curve.x) <= 80 else ""
         size = 4 if len(curve.x) > 1 else 8
-        axes.plot(curve.x, curve.y, color=color, marker=marker, markersize=size, label=curve.label)
+        axes.plot(
+            curve.x, curve.y, color=color, marker=marker, markersize=size, label=shown(curve.label)
+        )
     for i, (value, label) in enumerate(lines):
         style = ("--", "-.", ":")[i % 3]
-        axes.axhline(value, color=COLORS[-1], linestyle=style, linewidth=1.3, label=label)
+        axes.axhline(value, color=COLORS[-1], linestyle=style, linewidth=1.3, label=shown(label))
     axes.set(xlabel=curves.x.text, ylabel=curves.y.text, title=title)
     axes.margins(y=0.08)
+    axes.ticklabel_format(scilimits=(-2, 5))
+    axes.locator_params(nbins=7)
     axes.legend(loc="best")
     return figure
 

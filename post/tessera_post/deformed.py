@@ -11,6 +11,7 @@ from tessera_post.body import Frame
 from tessera_post.cli import tell, wrote
 from tessera_post.errors import PostError
 from tessera_post.job import Job, open_jobs
+from tessera_post.output import PICTURES, find_output
 from tessera_post.picture import add_look, draw_frames, options_of
 from tessera_post.style import save
 
@@ -35,6 +36,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Draws the picture."""
     jobs = open_jobs(options.job)
+    default = jobs[0].folder / f"{jobs[0].name}_deformed.png"
+    path = find_output(options.output, default, PICTURES)
     for job in jobs:
         tell(job.notes)
     look = options_of(options)
@@ -43,7 +46,6 @@ def run(options: argparse.Namespace) -> int:
         for job in jobs
     ]
     figure = draw_frames(rows, replace(look, field=options.field))
-    path = options.output or jobs[0].folder / f"{jobs[0].name}_deformed.png"
     save(figure, path)
     wrote(path)
     return 0

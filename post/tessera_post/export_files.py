@@ -49,7 +49,8 @@ class Batch:
         for folder in self._folders:
             folder.rmdir()
         if isinstance(problem, OSError):
-            path = list(self._temporary)[-1] if self._temporary else self._folders[0]
+            asked = [*self._folders, *self._temporary]
+            path = asked[-1] if asked else problem.filename
             raise PostError(f"cannot write '{path}': {problem.strerror}") from problem
 
 

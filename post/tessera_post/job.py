@@ -1,5 +1,6 @@
 """A job: its files found by name, opened once, and what every command asks of them."""
 
+from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import numpy as np
 from tessera_post.errors import PostError, one_of
 from tessera_post.fields import Quantity, find_quantity
 from tessera_post.log import Log, read_log
-from tessera_post.series import UNREADABLE, VTK_TRIANGLE, Series, first_line
+from tessera_post.series import VTK_TRIANGLE, Series
 from tessera_post.units import Units
 
 FORMULATIONS = {"standard": "standard MPM", "fbar": "F-bar patch"}
@@ -34,7 +35,6 @@ class Job:
         if "tessera" not in self.points.file:
             self.close()
             raise PostError(f"'{path}' is no result of Tessera: it has no group /tessera")
-        self._tables = self.points.file["tessera"]
 
     def close(self) -> None:
         """Closes the files."""
@@ -46,12 +46,10 @@ class Job:
 
     def _table(self, name: str) -> dict[str, np.ndarray]:
         """Columns of a table, cut to the rows that all of them have."""
-        try:
-            columns = {key: column[()] for key, column in self._tables[name].items()}
-        except UNREADABLE as problem:
-            raise PostError(
-                f"'{self.path}': cannot read /tessera/{name}: {first_line(problem)}"
-            ) from problem
+        columns = self.points.read(
+            lambda file: {key: column[()] for key, column in file["tessera"][name].items()},
+            f"'{self.path}': cannot read /tessera/{name}",
+        )
         n_rows = min((len(column) for column in columns.values()), default=0)
         return {key: column[:n_rows] for key, column in columns.items()}
 
@@ -75,7 +73,7 @@ class Job:
 
     def text(self, name: str) -> str:
         """An attribute of the run as text: version, git, compiler, libraries, started, ..."""
-        value = self._tables.attrs.get(name, b"")
+        value = self.points.read(lambda file: file["tessera"].attrs.get(name, b""))
         return value.decode(errors="replace") if isinstance(value, bytes) else str(value)
 
     @cached_property
@@ -89,10 +87,13 @@ class Job:
         return self._scalar("deck_name").decode(errors="replace")
 
     def _scalar(self, name: str) -> bytes:
-        dataset = self._tables.get(name)
-        if not isinstance(dataset, h5py.Dataset) or dataset.shape != ():
-            raise PostError(f"'{self.path}': /tessera/{name} is no text")
-        return bytes(dataset[()])
+        def load(file: h5py.File) -> bytes:
+            dataset = file["tessera"].get(name)
+            if not isinstance(dataset, h5py.Dataset) or dataset.shape != ():
+                raise PostError(f"'{self.path}': /tessera/{name} is no text")
+            return bytes(dataset[()])
+
+        return self.points.read(load)
 
     @cached_property
     def log(self) -> Log | None:
@@ -228,6 +229,33 @@ class Job:
         return quantity.evaluate(self.points.field(quantity.field, output))
 
 
+def labels_of(jobs: Sequence[Job]) -> list[str]:
+    """Labels that tell jobs apart: formulations, with names or even paths where they are alike."""
+    labels = [job.label for job in jobs]
+    paths = [job.path.resolve().with_suffix("") for job in jobs]
+    for n_parts in (1, 2, 0):  # the name, with its folder, the whole path
+        if len(set(labels)) == len(labels):
+            break
+        alike = {label for label in labels if labels.count(label) > 1}
+        labels = [
+            f"{'/'.join(path.parts[-n_parts:])}, {job.label}" if label in alike else label
+            for job, label, path in zip(jobs, labels, paths)
+        ]
+    return labels
+
+
+def check_units(jobs: Sequence[Job], dimensions: Sequence[str]) -> None:
+    """Raises PostError when jobs that share an axis or a colour scale have other units."""
+    for dimension in dimensions:
+        units = [job.units.of(dimension) for job in jobs]
+        for job, unit in zip(jobs, units):
+            if unit != units[0]:
+                raise PostError(
+                    f"'{jobs[0].name}' is in {units[0]}, '{job.name}' in {unit}: expected jobs"
+                    " with the same units"
+                )
+
+
 def find_results(name: str) -> list[Path]:
     """Result files that a user means by a name: a job, its deck, one of its files, or the two
     jobs of --compare. Raises PostError when there are none."""
@@ -236,6 +264,10 @@ def find_results(name: str) -> list[Path]:
         given = given.with_name(given.name.removesuffix(MESH_SUFFIX) + SUFFIX)
     if given.suffix == SUFFIX or given.is_dir():
         return [given]
+    if given.with_name(given.name + SUFFIX).name.endswith(MESH_SUFFIX) and not given.exists():
+        of_points = given.with_name(given.name.removesuffix("_mesh") + SUFFIX)
+        if of_points.exists():
+            return [of_points]
     stem = given
     for ending in (".inp", ".log", ".sta", "_history.csv"):
         stem = stem.with_name(stem.name.removesuffix(ending))

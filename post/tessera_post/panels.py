@@ -7,14 +7,19 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from tessera_post.fields import Quantity
 from tessera_post.scene import View, Window
-from tessera_post.style import ColorScale, plt
+from tessera_post.style import ColorScale, category_shades, plt
 from tessera_post.units import Units
 
 LARGEST = 5.6  # side of a panel [inch]
 WIDEST = 13.0  # all panels of a row [inch]
+NARROWEST = 1.7  # panel [inch]
+LETTER = 0.0076  # width of a letter, over the size of the font [inch per point]
+TITLE_SIZES = (7.0, 11.0)  # smallest and largest font [point]
+MOST_CATEGORIES = 12  # in a legend
 AXIS_NAMES = "xyz"
 ARROW = 0.07  # length of the arrows that show the axes, over the larger side of a panel
 
@@ -37,6 +42,7 @@ class Sheet:
     quantity: Quantity | None
     scale: ColorScale | None
     title: str = ""
+    categories: tuple[int, ...] = ()  # numbers of things that the panels show
 
     @property
     def has_bar(self) -> bool:
@@ -46,7 +52,7 @@ class Sheet:
 
 def panel_size(window: Window, n_columns: int) -> tuple[float, float]:
     """Width and height of a panel [inch]."""
-    width = min(LARGEST, WIDEST / n_columns)
+    width = max(min(LARGEST, WIDEST / n_columns), NARROWEST)
     height = width * window.height / window.width
     if height > LARGEST:
         width, height = width * LARGEST / height, LARGEST
@@ -64,7 +70,7 @@ def compose(rows: Sequence[Sequence[Panel]], sheet: Sheet) -> Figure:
     width, height = panel_size(sheet.window, n_columns)
     plane = sheet.view.axes is not None
     beside, above = (0.75, 1.05) if plane else (0.15, 0.6)
-    bar = 1.15 if sheet.has_bar else 0.1
+    bar = 1.15 if sheet.has_bar or has_legend(sheet) else 0.1
     total = n_columns * (width + 0.15) + beside + bar
     size = max(total, 4.0), n_rows * (height + above) + (0.35 if sheet.title else 0.0)
     figure, grid = plt.subplots(
@@ -76,9 +82,11 @@ def compose(rows: Sequence[Sequence[Panel]], sheet: Sheet) -> Figure:
             if j >= len(row):
                 axes.set_axis_off()
                 continue
-            show(axes, row[j], sheet)
+            show(axes, row[j], sheet, width)
             if plane:
                 label_axes(axes, sheet, left=j == 0, bottom=i == n_rows - 1)
+    if has_legend(sheet):
+        add_legend(figure, sheet)
     if sheet.has_bar:
         add_bar(figure, grid, sheet, n_rows * height)
     if sheet.title:
@@ -88,7 +96,33 @@ def compose(rows: Sequence[Sequence[Panel]], sheet: Sheet) -> Figure:
     return figure
 
 
-def show(axes: Axes, panel: Panel, sheet: Sheet) -> None:
+def title_size(title: str, width: float) -> float:
+    """A font in which the title is no wider than a panel of that width [inch]."""
+    letters = max(len(line) for line in title.splitlines())
+    smallest, largest = TITLE_SIZES
+    return max(smallest, min(largest, (width + 0.1) / (LETTER * letters)))
+
+
+def has_legend(sheet: Sheet) -> bool:
+    """Few numbers of things are named."""
+    return 0 < len(sheet.categories) <= MOST_CATEGORIES
+
+
+def add_legend(figure: Figure, sheet: Sheet) -> None:
+    """The colours of numbers of things."""
+    assert sheet.scale is not None
+    assert sheet.quantity is not None
+    colors = sheet.scale.cmap(category_shades(np.array(sheet.categories)))
+    patches = [Patch(color=color) for color in colors]
+    figure.legend(
+        patches,
+        [str(number) for number in sheet.categories],
+        title=sheet.quantity.label,
+        loc="outside center right",
+    )
+
+
+def show(axes: Axes, panel: Panel, sheet: Sheet, width: float) -> None:
     """One image; its coordinates are those of the plane of projection."""
     window = sheet.window
     axes.grid(visible=False)
@@ -98,7 +132,7 @@ def show(axes: Axes, panel: Panel, sheet: Sheet) -> None:
         interpolation="antialiased",
         aspect="equal",
     )
-    axes.set_title(panel.title, fontsize=11)
+    axes.set_title(panel.title, fontsize=title_size(panel.title, width))
     if sheet.view.axes is None:
         axes.set(xticks=[], yticks=[])
         axes.spines[:].set_visible(False)
@@ -112,6 +146,7 @@ def label_axes(axes: Axes, sheet: Sheet, left: bool, bottom: bool) -> None:
     plane = sheet.view.axes
     assert plane is not None
     across, upwards = (sheet.units.axis(AXIS_NAMES[i], "length") for i in plane)
+    axes.locator_params(axis="x", nbins=5 if sheet.window.width > 0.5 * sheet.window.height else 3)
     if left:
         axes.set_ylabel(upwards)
     if bottom:

@@ -6,13 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from tessera_post.body import Clip, Frame, Layer, make_layers
 from tessera_post.cli import tell, wrote
 from tessera_post.errors import PostError
-from tessera_post.fields import Quantity
-from tessera_post.job import Job, open_jobs
+from tessera_post.fields import Quantity, parse
+from tessera_post.job import Job, check_units, labels_of, open_jobs
+from tessera_post.output import PICTURES, find_output, finite
 from tessera_post.panels import Panel, Sheet, compose, pixels_of
 from tessera_post.scene import Renderer, find_view, find_window
 from tessera_post.style import make_scale, save
@@ -22,6 +24,7 @@ EXAMPLE = """\
     --view x- --clip 'y<1.6' --clip 'z>3.4'
 """
 WHAT = ("points", "elements", "mesh")
+MOST_ENLARGED = 1e6
 PREFERRED = ("S:pressure", "PEEQ", "U", "J")
 
 
@@ -93,24 +96,25 @@ def add_look(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--range",
         nargs=2,
-        type=float,
+        type=finite,
         metavar=("MIN", "MAX"),
         help="ends of the colour scale (default: of all values of all jobs)",
     )
     parser.add_argument(
-        "--warp", type=float, default=1.0, metavar="F", help="enlarge displacements F times"
+        "--warp", type=finite, default=1.0, metavar="F", help="enlarge displacements F times"
     )
-    parser.add_argument("--zoom", type=float, default=1.0, metavar="F", help="larger than to fit")
+    parser.add_argument("--zoom", type=finite, default=1.0, metavar="F", help="larger than to fit")
     parser.add_argument("--title", default="", help="above the picture")
 
 
 def run(options: argparse.Namespace) -> int:
     """Draws the picture."""
     jobs = open_jobs(options.job)
+    default = jobs[0].folder / f"{jobs[0].name}_picture.png"
+    path = find_output(options.output, default, PICTURES)
     for job in jobs:
         tell(job.notes)
     figure = draw(jobs, options_of(options))
-    path = options.output or jobs[0].folder / f"{jobs[0].name}_picture.png"
     save(figure, path)
     wrote(path)
     return 0
@@ -119,8 +123,8 @@ def run(options: argparse.Namespace) -> int:
 def options_of(options: argparse.Namespace) -> PictureOptions:
     """From the command line."""
     for name in ("warp", "zoom"):
-        if not getattr(options, name) > 0.0:
-            raise PostError(f"--{name}: expected a number above 0")
+        if not 0.0 < getattr(options, name) <= MOST_ENLARGED:
+            raise PostError(f"--{name}: expected a number above 0, at most {MOST_ENLARGED:g}")
     return PictureOptions(
         field=options.field,
         what=options.what,
@@ -156,7 +160,7 @@ def parse_clip(text: str) -> Clip:
         else:
             normal = [float(number) for number in name.split(",")]
         offset = float(found["offset"])
-        if len(normal) != 3 or not any(normal):
+        if len(normal) != 3 or not any(normal) or not np.isfinite([*normal, offset]).all():
             raise ValueError
     except ValueError:
         raise PostError(
@@ -167,19 +171,26 @@ def parse_clip(text: str) -> Clip:
     return Clip((x, y, z), sign * offset)
 
 
-def find_field(job: Job, options: PictureOptions) -> Quantity:
-    """The quantity to draw."""
+def find_field(jobs: Sequence[Job], options: PictureOptions) -> Quantity:
+    """The quantity to draw, one that all jobs have, in the same unit."""
     if options.what == "mesh":
-        return job.mesh_quantity(options.field or "J")
-    if options.field:
-        return job.quantity(options.field)
-    names = [*PREFERRED, *job.points.point_fields]
-    for name in names:
-        try:
-            return job.quantity(name)
-        except PostError:
-            continue
-    raise PostError(f"'{job.path.name}' has no fields to draw")
+        found = [job.mesh_quantity(options.field or "J") for job in jobs]
+    elif options.field:
+        found = [job.quantity(options.field) for job in jobs]
+    else:
+        found = [default_field(jobs)]
+    check_units(jobs, [found[0].dimension])
+    return found[0]
+
+
+def default_field(jobs: Sequence[Job]) -> Quantity:
+    """The first quantity that is worth seeing and that all jobs have."""
+    fields = [job.points.point_fields for job in jobs]
+    for name in (*PREFERRED, *fields[0]):
+        quantity = parse(name)
+        if quantity is not None and all(quantity.field in there for there in fields):
+            return quantity
+    raise PostError(f"'{jobs[0].path.name}' has no field to draw that all jobs have")
 
 
 def frames_of(jobs: Sequence[Job], options: PictureOptions) -> list[Frame]:
@@ -190,13 +201,13 @@ def frames_of(jobs: Sequence[Job], options: PictureOptions) -> list[Frame]:
     ]
 
 
-def title_of(frame: Frame, with_label: bool = True) -> str:
-    """Formulation, increment and time of an output."""
+def title_of(frame: Frame, label: str) -> str:
+    """Label of the job, increment and time of an output."""
     job, output = frame.job, frame.output
     when = f"increment {job.increments[output]}, time {job.points.times[output]:g}"
     if frame.warp != 1.0:
         when += f", displacements \N{MULTIPLICATION SIGN} {frame.warp:g}"
-    return f"{job.label}\n{when}" if with_label else when
+    return f"{label}\n{when}"
 
 
 def draw(jobs: Sequence[Job], options: PictureOptions) -> Figure:
@@ -207,29 +218,40 @@ def draw(jobs: Sequence[Job], options: PictureOptions) -> Figure:
 def draw_frames(rows: Sequence[Sequence[Frame]], options: PictureOptions) -> Figure:
     """A picture of rows of frames with one scale, one camera and one size."""
     frames = [frame for row in rows for frame in row]
-    quantity = {frame.job.name: find_field(frame.job, options) for frame in frames}
-    layers = [
-        [make_layers(frame, options.what, quantity[frame.job.name]) for frame in row]
-        for row in rows
-    ]
+    jobs = list(dict.fromkeys(frame.job for frame in frames))
+    check_units(jobs, ["length"])
+    quantity = find_field(jobs, options)
+    label = dict(zip(jobs, labels_of(jobs)))
+    layers = [[make_layers(frame, options.what, quantity) for frame in row] for row in rows]
     drawn = [stack for row in layers for stack in row]
-    first = quantity[frames[0].job.name]
     values = [stack[0].values for stack in drawn]
-    scale = make_scale(first, [v for v in values if v is not None], options.limits)
+    scale = make_scale(quantity, [v for v in values if v is not None], options.limits)
     view = find_view(options.view, frames[0].job.n_dim)
     window = find_window([layer.data for stack in drawn for layer in shown_fully(stack)], view)
     window = window.zoomed(options.zoom)
-    sheet = Sheet(view, window, frames[0].job.units, first, scale, options.title)
+    sheet = Sheet(
+        *(view, window, frames[0].job.units, quantity, scale),
+        title=options.title,
+        categories=categories_of(quantity, values),
+    )
     renderer = Renderer(view, window, pixels_of(window, max(len(row) for row in rows)))
     panels = [
         [
-            Panel(title_of(frame), renderer.draw(stack, first, scale))
+            Panel(title_of(frame, label[frame.job]), renderer.draw(stack, quantity, scale))
             for frame, stack in zip(row, row_layers)
         ]
         for row, row_layers in zip(rows, layers)
     ]
     renderer.close()
     return compose(panels, sheet)
+
+
+def categories_of(quantity: Quantity, values: Sequence[np.ndarray | None]) -> tuple[int, ...]:
+    """Numbers of things for the legend; none for other quantities."""
+    if not quantity.is_category:
+        return ()
+    there = np.concatenate([v for v in values if v is not None])
+    return tuple(int(v) for v in np.unique(there[np.isfinite(there)]))
 
 
 def shown_fully(stack: Sequence[Layer]) -> Sequence[Layer]:

@@ -7,6 +7,7 @@ from tessera_post.body import Frame
 from tessera_post.cli import tell, wrote
 from tessera_post.fields import Quantity
 from tessera_post.job import Job, open_job
+from tessera_post.output import find_output
 from tessera_post.picture import add_when
 from tessera_post.report_page import Sections, render
 
@@ -35,11 +36,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Writes the page."""
     job = open_job(options.job)
+    path = find_output(options.output, job.folder / f"{job.name}_report.html", (".html", ".htm"))
     tell(job.notes)
     output = job.output_of(options.increment, options.time)
     quantity = find_quantity(job, options.field)
     page = make_page(Frame(job, output), quantity, with_view=not options.no_3d)
-    path = options.output or job.folder / f"{job.name}_report.html"
     path.write_text(page, encoding="utf-8")
     wrote(path)
     return 0
@@ -49,7 +50,7 @@ def find_quantity(job: Job, field: str | None) -> Quantity:
     """The field of pictures and view."""
     from tessera_post.picture import PictureOptions, find_field
 
-    return find_field(job, PictureOptions(field=field))
+    return find_field([job], PictureOptions(field=field))
 
 
 def make_page(frame: Frame, quantity: Quantity, with_view: bool) -> str:

@@ -2,19 +2,22 @@
 
 import argparse
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tessera_post.cli import tell, wrote
 from tessera_post.curve import number
 from tessera_post.fields import Quantity
-from tessera_post.job import Job, open_jobs
-from tessera_post.picture import PictureOptions, find_field
-from tessera_post.style import COLORS, colors_of, distinct_labels, plt, save
+from tessera_post.job import Job, labels_of, open_jobs
+from tessera_post.output import PICTURES, find_output, finite
+from tessera_post.picture import PictureOptions, find_field, parse_limits
+from tessera_post.style import COLORS, colors_of, plt, save, shown
 
 EXAMPLE = """\
   tessera-post scatter stretch_standard stretch_fbar --field TAU33 --exact 400 "yield stress"
@@ -55,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="horizontal line of the exact value; may be repeated",
     )
     parser.add_argument(
-        "--range", nargs=2, type=float, metavar=("MIN", "MAX"), help="ends of the y axis"
+        "--range", nargs=2, type=finite, metavar=("MIN", "MAX"), help="ends of the y axis"
     )
     parser.add_argument("--title", default="", help="above the picture")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="PNG, PDF or SVG")
@@ -64,25 +67,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Draws the scatter and prints the statistics of the last output."""
     jobs = open_jobs(options.job)
+    default = jobs[0].folder / f"{jobs[0].name}_scatter.png"
+    path = find_output(options.output, default, PICTURES)
+    limits = parse_limits(options.range)
     for job in jobs:
         tell(job.notes)
     exact = [(number(value, "--exact"), label) for value, label in options.exact]
-    quantities = [find_field(job, PictureOptions(field=options.field)) for job in jobs]
-    labels = distinct_labels([job.label for job in jobs], [job.name for job in jobs])
+    quantity = find_field(jobs, PictureOptions(field=options.field))
     scatters = [
-        collect(job, quantity, label, options.against)
-        for job, quantity, label in zip(jobs, quantities, labels)
+        collect(job, quantity, label, options.against) for job, label in zip(jobs, labels_of(jobs))
     ]
-    axis = jobs[0].units.axis(quantities[0].label, quantities[0].dimension)
+    axis = jobs[0].units.axis(quantity.label, quantity.dimension)
     figure = draw(scatters, f"{options.against} [-]", axis, exact)
-    if options.range:
-        figure.axes[0].set_ylim(*options.range)
+    if limits:
+        figure.axes[0].set_ylim(*limits)
     if options.title:
         figure.suptitle(options.title)
-    path = options.output or jobs[0].folder / f"{jobs[0].name}_scatter.png"
     save(figure, path)
     for scatter in scatters:
-        print(describe(scatter, jobs[0].units.of(quantities[0].dimension)))
+        print(describe(scatter, jobs[0].units.of(quantity.dimension)))
     wrote(path)
     return 0
 
@@ -117,13 +120,23 @@ def draw(
         draw_one(axes, scatter, color)
         for i, (value, text) in enumerate(exact):
             style = ("-", "--", ":")[i % 3]
-            axes.axhline(value, color=COLORS[-1], linestyle=style, linewidth=1.0, label=text)
+            axes.axhline(value, color=COLORS[-1], linestyle=style, linewidth=1.0, label=shown(text))
         axes.set(xlabel=x_axis, title=scatter.label)
         axes.xaxis.get_major_locator().set_params(integer="increment" in x_axis)
     grid[0, 0].set_ylabel(y_axis)
     handles, names = grid[0, 0].get_legend_handles_labels()
+    if n > 1:
+        handles = [in_grey(handle) for handle in handles]
     figure.legend(handles, names, loc="outside lower center", ncols=len(names))
     return figure
+
+
+def in_grey(handle: Artist) -> Artist:
+    """An entry of the legend that stands for the colours of all panels."""
+    grey = copy(handle)
+    if grey.get_label() in ("mean", "min, max", "standard deviation"):
+        grey.set_color("0.35")
+    return grey
 
 
 def draw_one(axes: Axes, scatter: Scatter, color: str) -> None:

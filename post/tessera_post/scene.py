@@ -29,6 +29,7 @@ VIEWS = {  # direction from the body to the camera, and what is up
     "z-": ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0)),
     "iso": ((1.0, -1.5, 0.9), (0.0, 0.0, 1.0)),
 }
+STEEP = 1e-6  # a direction nearer to the vertical than this is seen with y upwards
 MARGIN = 0.03  # of the larger side of the body, around it
 FOOT = 0.13  # of the larger side, below an aslant view: for the arrows of the axes
 SMALLEST_SIDE = 0.25  # of an image, over its larger side
@@ -99,7 +100,10 @@ def find_view(text: str | None, n_dim: int) -> View:
         direction = ()
     if len(direction) != 3 or not np.isfinite(direction).all() or not any(direction):
         raise PostError(f"--view: expected {', '.join(VIEWS)} or a direction x,y,z, found '{text}'")
-    up = (0.0, 1.0, 0.0) if direction[0] == direction[1] == 0.0 else (0.0, 0.0, 1.0)
+    largest = max(abs(number) for number in direction)
+    direction = tuple(number / largest for number in direction)
+    upright = max(abs(direction[0]), abs(direction[1])) > STEEP
+    up = (0.0, 0.0, 1.0) if upright else (0.0, 1.0, 0.0)
     return make_view(direction, up)
 
 

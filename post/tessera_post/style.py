@@ -20,6 +20,7 @@ COLOR_OF = {"standard MPM": "#d55e00", "F-bar patch": "#0072b2"}
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 GOLDEN = 0.618033988749895
+CONSTANT = 1e-8  # a field that varies less, over its size, shows round-off only
 SIGNED = 0.02  # share of the range that must lie on either side of 0 for a scale around 0
 
 plt.rcParams.update(
@@ -44,13 +45,9 @@ def colors_of(labels: Sequence[str]) -> list[str]:
     return [color for color in wanted if color]
 
 
-def distinct_labels(labels: Sequence[str], names: Sequence[str]) -> list[str]:
-    """Labels of curves; with the job's name where two would be the same."""
-    twice = {label for label in labels if list(labels).count(label) > 1}
-    return [
-        f"{name}, {label}" if label in twice and label != name else label
-        for label, name in zip(labels, names)
-    ]
+def shown(label: str) -> str:
+    """A label for a legend: matplotlib leaves out those that begin with an underscore."""
+    return f" {label}" if label.startswith("_") else label
 
 
 @dataclass(frozen=True)
@@ -90,7 +87,7 @@ def make_scale(
         if limits is None:
             high = max(-low, high)
             low = -high
-    if high - low <= 1e-12 * max(abs(low), abs(high)):  # a constant field
+    if high - low <= CONSTANT * max(abs(low), abs(high)):
         width = 1e-3 * max(abs(low), abs(high)) or 1.0
         low, high = low - width, high + width
     below, above = least < low, most > high

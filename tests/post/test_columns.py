@@ -72,19 +72,24 @@ def test_increment_counts_over_all_steps():
 
 
 @pytest.mark.parametrize(
-    ("name", "label", "dimension"),
+    ("name", "label", "generic", "dimension"),
     [
-        ("RF3[FOOTING]", "reaction 3 of FOOTING", "force"),
-        ("CF1[TOP]", "applied force 1 of TOP", "force"),
-        ("U2[TOP]", "displacement 2 of TOP", "length"),
-        ("U2[0.5 1 0]", "displacement 2 of 0.5 1 0", "length"),
-        ("S12[0 0 0]", "Cauchy stress 12 at 0 0 0", "stress"),
-        ("PEEQ[0 0 0]", "accumulated plastic strain at 0 0 0", "number"),
-        ("HEAT[A]", "HEAT[A]", "number"),
+        ("RF3[FOOTING]", "reaction 3 of FOOTING", "reaction", "force"),
+        ("CF1[TOP]", "applied force 1 of TOP", "applied force", "force"),
+        ("U2[TOP]", "displacement 2 of TOP", "displacement", "length"),
+        ("U2[0.5 1 0]", "displacement 2 of 0.5 1 0", "displacement", "length"),
+        ("S12[0 0 0]", "Cauchy stress 12 at 0 0 0", "Cauchy stress", "stress"),
+        (
+            "PEEQ[0 0 0]",
+            "accumulated plastic strain at 0 0 0",
+            "accumulated plastic strain",
+            "number",
+        ),
+        ("HEAT[A]", "HEAT[A]", "HEAT[A]", "number"),
     ],
 )
-def test_columns_are_told_in_words(name, label, dimension):
-    assert describe(name) == (label, dimension)
+def test_columns_are_told_in_words(name, label, generic, dimension):
+    assert describe(name) == (label, generic, dimension)
 
 
 def test_reaction_over_displacement_of_the_same_set_comes_first(job):

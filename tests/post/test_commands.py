@@ -1,5 +1,7 @@
 """Every command on every kind of job, and on what is no job."""
 
+import subprocess
+
 import h5py
 import pytest
 from post_runs import bar_deck
@@ -139,14 +141,85 @@ def test_picture_goes_beside_the_results(post, single, command):
     assert f"wrote {path}\n" in out
 
 
-def test_folder_that_is_not_there_gets_one_line(post, bar, tmp_path):
-    for command in ("curve", "picture", "scatter", "deformed", "report"):
-        call = arguments(command, bar, tmp_path / "missing" / "out")
-        code, _, err = post(*call)
-        assert code == 2
-        assert err.endswith("No such file or directory\n")
+@pytest.mark.parametrize("command", DRAWING)
+def test_file_that_cannot_be_written_is_told_before_drawing(post, bar, tmp_path, command):
+    ending = DRAWING[command][1]
+    results = bar.with_name("bar.vtkhdf").read_bytes()
+    for path, message in (
+        (tmp_path / "missing" / f"out{ending}", f"there is no folder '{tmp_path / 'missing'}'"),
+        (tmp_path, f"'{tmp_path}' is a folder: expected the name of a file"),
+        (tmp_path / "out.xyz", f"'{tmp_path / 'out.xyz'}': expected a name that ends in ."),
+        (tmp_path / "out", f"'{tmp_path / 'out'}': expected a name that ends in ."),
+        (bar.with_name("bar.vtkhdf"), "bar.vtkhdf': expected a name that ends in ."),
+    ):
+        code, out, err = post(command, bar, "-o", path)
+        assert (code, out) == (2, "")
+        assert message in err
         assert err.count("\n") == 1
-        assert str(tmp_path / "missing") in err
+    assert not list(tmp_path.iterdir())
+    assert bar.with_name("bar.vtkhdf").read_bytes() == results
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        ["picture", "--zoom", "nan"],
+        ["picture", "--warp", "inf"],
+        ["picture", "--range", "0", "inf"],
+        ["scatter", "--range", "nan", "0"],
+        ["animate", "--fps", "nan"],
+        ["compare", "--rtol", "inf"],
+    ],
+)
+def test_numbers_must_be_finite(post, bar, call):
+    code, _, err = post(call[0], bar, *([bar] if call[0] == "compare" else []), *call[1:])
+    assert code == 2
+    assert f"argument {call[1]}: expected a number, found" in err
+
+
+@pytest.mark.parametrize("command", ["picture", "scatter", "deformed", "animate"])
+def test_jobs_in_other_units_are_not_mixed(post, bar, run_deck, tmp_path, command):
+    deck = bar_deck().replace("LENGTH=m, FORCE=kN", "LENGTH=mm, FORCE=N")
+    other = run_deck(tmp_path, deck, name="other")
+    ending = DRAWING[command][1]
+    code, _, err = post(command, bar, other, "--field", "S11", "-o", tmp_path / f"out{ending}")
+    assert code == 2
+    units = ("kPa", "MPa") if command == "scatter" else ("m", "mm")
+    assert err == (
+        f"tessera-post: error: 'bar' is in {units[0]}, 'other' in {units[1]}: expected jobs with"
+        " the same units\n"
+    )
+
+
+def test_default_field_is_one_that_all_jobs_have(post, bar, run_deck, tmp_path):
+    deck = bar_deck().replace("S, TAU, LE, PEEQ, F, J, JBAR, U, VOL, MAT, PATCH, ELEMENT", "PEEQ")
+    other = run_deck(tmp_path, deck, name="other")
+    code, out, _ = post("scatter", bar, other, "-o", tmp_path / "out.png")
+    assert code == 0
+    first, second = (line.split(": ", 1)[1] for line in out.splitlines()[:2])
+    assert first == second
+    assert first.endswith(" -")
+
+
+@pytest.mark.parametrize("command", ["picture", "curve", "report"])
+def test_running_job_is_shown_as_far_as_it_goes(post, tessera_release, tmp_path, command):
+    """Again and again, while the program writes an increment every few milliseconds."""
+    (tmp_path / "bar.inp").write_text(bar_deck(inc=20000, size=5e-5), encoding="utf-8")
+    status = tmp_path / "bar.sta"
+    with subprocess.Popen([str(tessera_release), "-q", "bar.inp"], cwd=tmp_path) as process:
+        while not status.exists() or status.read_text().count("\n") < 5:
+            assert process.poll() is None
+        for _ in range(3):
+            assert process.poll() is None
+            code, _, err = post(*arguments(command, tmp_path / "bar", tmp_path / "out"))
+            assert code == 0, err
+            assert "has not finished" in err
+        process.kill()
+
+
+def test_name_of_the_mesh_file_means_the_job(post, bar, tmp_path):
+    code, out, _ = post("curve", bar.with_name("bar_mesh"), "-o", tmp_path / "out.png")
+    assert (code, out.startswith("F-bar patch: ")) == (0, True)
 
 
 def test_job_without_mesh_file_is_drawn_with_a_note(post, run_deck, tmp_path):

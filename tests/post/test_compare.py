@@ -300,6 +300,15 @@ def test_killed_runs_are_compared_as_far_as_both_go(killed, tessera_release, pos
     assert f"{many - few} of 'bar'" in err
 
 
+def test_run_that_never_went_on_is_not_comparable(bar, run_deck, post, tmp_path):
+    start = run_deck(tmp_path, bar_deck(), "--check", name="start")
+    assert error_of(post("compare", bar, start, "-q")) == (
+        "'bar' and 'start' are not comparable: they have no time after 0 in common"
+    )
+    again = run_deck(tmp_path, bar_deck(), "--check", name="again")
+    assert post("compare", again, start, "-q")[0] == 0
+
+
 def test_single_increment_is_compared_with_four(bar, single, post):
     code, _, err = post("compare", single, bar, "--rtol", "0.5", "--no-fields")
     assert code == 0

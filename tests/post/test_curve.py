@@ -81,7 +81,7 @@ def test_same_formulation_twice_is_told_apart(post, figure, bar, single):
     assert post("curve", bar, single, "-y", "RF1")[0] == 0
     axes = figure[0][0].axes[0]
     labels = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert labels == ["bar, F-bar patch", "bar, F-bar patch"]
+    assert labels == [f"{job.parent.name}/bar, F-bar patch" for job in (bar, single)]
     assert len({line.get_color() for line in axes.lines}) == 2
     assert post("curve", bar, single, "--labels", "four", "one")[0] == 0
     labels = [text.get_text() for text in figure[-1][0].axes[0].get_legend().get_texts()]
@@ -91,7 +91,7 @@ def test_same_formulation_twice_is_told_apart(post, figure, bar, single):
 def test_several_columns_share_the_axis(post, figure, bar):
     assert post("curve", bar, "-y", "U1", "U2", "-x", "time")[0] == 0
     axes = figure[0][0].axes[0]
-    assert axes.get_ylabel() == "displacement 1 [m]"
+    assert axes.get_ylabel() == "displacement [m]"
     labels = [text.get_text() for text in axes.get_legend().get_texts()]
     assert labels == ["F-bar patch: U1[X1]", "F-bar patch: U2[X1]"]
 

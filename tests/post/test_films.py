@@ -134,7 +134,7 @@ def test_film_keeps_camera_and_scale(bar, drawn):  # noqa: F811
     [
         (["-o", "film.avi"], "'film.avi': expected a name that ends in .mp4 or .gif"),
         (["--every", "0"], "--every: expected a whole number above 0"),
-        (["--fps", "0"], "--fps: expected a number above 0 and at most 100"),
+        (["--fps", "0"], "--fps: expected a number from 0.1 to 100"),
     ],
 )
 def test_wrong_options_are_told(post, bar, options, message):

@@ -1,10 +1,12 @@
 """Pictures: what is drawn, where it is drawn, and in which colours."""
 
+import itertools
+
 import h5py
 import matplotlib.image
 import numpy as np
 import pytest
-from tessera_post import picture
+from tessera_post import curve, picture
 from tessera_post.body import Clip, Frame, elements, make_layers, mesh_surface, radii, spheres
 from tessera_post.errors import PostError
 from tessera_post.job import open_job
@@ -279,10 +281,15 @@ def test_axes_and_bar_have_units(example):
         (["--increment", "9"], "'bar' has no output at increment 9: there are 0, 1, 2, 3, 4"),
         (["--time", "9"], "'bar' has no output at time 9: there are 0, 0.25, 0.5, 0.75, 1"),
         (["--view", "up"], "--view: expected x, y, z, x-, y-, z-, iso or a direction x,y,z, found"),
-        (["--clip", "x<-1"], "'bar': the planes of --clip leave nothing"),
+        (["--clip", "x<-1"], "'bar', increment 4: the planes of --clip leave nothing"),
         (["--range", "2", "1"], "--range: expected MIN below MAX, found 2 and 1"),
         (["--warp", "0"], "--warp: expected a number above 0"),
-        (["--zoom", "nan"], "--zoom: expected a number above 0"),
+        (["--zoom", "1e7"], "--zoom: expected a number above 0, at most 1e+06"),
+        (["--clip", "x<inf"], "--clip: expected a plane such as 'x<0.5' or '1,1,0<2', found"),
+        (
+            ["--view", "0,0,0"],
+            "--view: expected x, y, z, x-, y-, z-, iso or a direction x,y,z, found",
+        ),
     ],
 )
 def test_wrong_options_are_told(post, bar, tmp_path, options, message):
@@ -296,3 +303,37 @@ def test_wrong_options_are_told(post, bar, tmp_path, options, message):
 def test_clip_is_a_plane_through_its_origin():
     clip = Clip((0.0, 3.0, 4.0), 10.0)
     assert np.array(clip.normal) @ clip.origin == pytest.approx(10.0)
+
+
+def test_jobs_of_one_formulation_have_their_names_above(bar, single):
+    jobs = [open_job(str(job)) for job in (bar, single)]
+    figure = picture.draw(jobs, PictureOptions(field="S11"))
+    titles = [axes.get_title().splitlines()[0] for axes in figure.axes[:2]]
+    assert titles == [f"{job.folder.name}/bar, F-bar patch" for job in jobs]
+
+
+def test_few_numbers_of_things_have_a_legend(bar):
+    figure = picture.draw([open_job(str(bar))], PictureOptions(field="PATCH"))
+    (legend,) = figure.legends
+    assert legend.get_title().get_text() == "patch"
+    assert [text.get_text() for text in legend.get_texts()] == [str(i) for i in range(1, 9)]
+
+
+def test_titles_fit_above_narrow_panels(bar):
+    job = open_job(str(bar))
+    frames = [[Frame(job, i) for i in (0, 1, 2, 3, 4, 0, 1, 2, 3, 4)]]
+    figure = picture.draw_frames(frames, PictureOptions(field="S11"))
+    figure.canvas.draw()
+    boxes = [axes.title.get_window_extent() for axes in figure.axes[:10]]
+    assert all(left.x1 < right.x0 for left, right in itertools.pairwise(boxes))
+
+
+def test_ticks_of_the_footing_do_not_overlap(example, monkeypatch, post):
+    figures = []
+    monkeypatch.setattr(curve, "save", lambda figure, _: figures.append(figure))
+    assert post("curve", example("footing", "standard"))[0] == 0
+    figures[0].canvas.draw()
+    labels = [text for text in figures[0].axes[0].get_xticklabels() if text.get_text()]
+    boxes = [text.get_window_extent() for text in labels]
+    assert len(boxes) >= 3
+    assert all(left.x1 < right.x0 for left, right in itertools.pairwise(boxes))
