@@ -41,7 +41,8 @@ contains
                     //integer_text(info%n_threads)//line_end//line_end//"deck "//info%deck_name &
                     //line_end//info%deck_text//line_end//"end of deck"//line_end, error)
     if (allocated(error)) return
-    if (len(info%warnings) > 0) call log_message(log, "warnings"//line_end//info%warnings//line_end, error)
+    if (len(info%warnings) > 0) &
+      call log_message(log, "warnings"//line_end//info%warnings//line_end, error)
     if (allocated(error)) return
     call write_line(log%file, model_text(model)//freedom_ratio_text(model)//set_text(model%mesh), &
                     error)
