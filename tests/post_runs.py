@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import sys
 
 import pytest
 from conftest import ROOT
@@ -111,6 +112,14 @@ def example(tessera_release, tmp_path_factory):
         return base / name / f"{name}_{method}"
 
     return job
+
+
+@pytest.fixture(autouse=True)
+def close_figures():
+    """Frees the figures that a test has looked at."""
+    yield
+    if "matplotlib.pyplot" in sys.modules:
+        sys.modules["matplotlib.pyplot"].close("all")
 
 
 @pytest.fixture

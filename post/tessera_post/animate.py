@@ -11,10 +11,10 @@ from PIL import Image
 from tqdm import tqdm
 
 from tessera_post.body import Frame, make_layers
-from tessera_post.cli import tell, wrote
+from tessera_post.cli import wrote
 from tessera_post.errors import PostError
-from tessera_post.job import Job, check_units, labels_of, open_jobs
-from tessera_post.output import find_output, finite
+from tessera_post.job import Job, check_units, labels_of
+from tessera_post.output import finite, open_for_drawing
 from tessera_post.panels import Panel, Sheet, compose, pixels_of
 from tessera_post.picture import PictureOptions, add_look, find_field, options_of, title_of
 from tessera_post.scene import Renderer, Window, find_view, find_window
@@ -48,10 +48,7 @@ def run(options: argparse.Namespace) -> int:
         raise PostError("--every: expected a whole number above 0")
     if not LEAST_FPS <= options.fps <= MOST_FPS:
         raise PostError(f"--fps: expected a number from {LEAST_FPS:g} to {MOST_FPS:g}")
-    jobs = open_jobs(options.job)
-    path = find_output(options.output, jobs[0].folder / f"{jobs[0].name}.mp4", FORMATS)
-    for job in jobs:
-        tell(job.notes)
+    jobs, path = open_for_drawing(options, ".mp4", FORMATS)
     film = Film(jobs, options_of(options), options.every)
     bar = tqdm(film.images(), total=len(film), unit="frame", disable=options.quiet)
     write_film(path, bar, options.fps)

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from tessera_post.cli import tell, wrote
+from tessera_post.cli import wrote
 from tessera_post.columns import Column, default_pair, find_column, partner
 from tessera_post.errors import PostError
-from tessera_post.job import Job, labels_of, open_jobs
-from tessera_post.output import PICTURES, find_output, finite
+from tessera_post.job import Job, labels_of
+from tessera_post.output import finite, open_for_drawing
 from tessera_post.style import COLORS, MARKERS, colors_of, plt, save, shown
 from tessera_post.units import conversion
 
@@ -104,11 +104,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Draws the curves and says in words what they do."""
-    jobs = open_jobs(options.job)
-    default = jobs[0].folder / f"{jobs[0].name}_curve.png"
-    path = find_output(options.output, default, PICTURES)
-    for job in jobs:
-        tell(job.notes)
+    jobs, path = open_for_drawing(options, "_curve.png")
     curves = collect(jobs, options)
     lines = [(number(value, "--line"), label) for value, label in options.line]
     bands = [(number(a, "--band"), number(b, "--band"), label) for a, b, label in options.band]

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from tessera_post.body import Frame
-from tessera_post.cli import tell, wrote
+from tessera_post.cli import wrote
 from tessera_post.errors import PostError
-from tessera_post.job import Job, open_jobs
-from tessera_post.output import PICTURES, find_output
+from tessera_post.job import Job
+from tessera_post.output import open_for_drawing
 from tessera_post.picture import add_look, draw_frames, options_of
 from tessera_post.style import save
 
@@ -35,11 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Draws the picture."""
-    jobs = open_jobs(options.job)
-    default = jobs[0].folder / f"{jobs[0].name}_deformed.png"
-    path = find_output(options.output, default, PICTURES)
-    for job in jobs:
-        tell(job.notes)
+    jobs, path = open_for_drawing(options, "_deformed.png")
     look = options_of(options)
     rows = [
         [Frame(job, output, look.warp, look.clips) for output in outputs_of(job, options)]

@@ -6,7 +6,9 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
+from tessera_post.cli import tell
 from tessera_post.errors import PostError
+from tessera_post.job import Job, open_jobs
 
 PICTURES = (".png", ".pdf", ".svg")
 
@@ -25,6 +27,17 @@ def find_output(given: Path | None, default: Path, endings: Sequence[str]) -> Pa
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise PostError(f"cannot write '{path}': no permission")
     return path
+
+
+def open_for_drawing(
+    options: argparse.Namespace, name: str, endings: Sequence[str] = PICTURES
+) -> tuple[list[Job], Path]:
+    """The jobs of a command and the file to write, by default JOB_name; notes are told."""
+    jobs = open_jobs(options.job)
+    path = find_output(options.output, jobs[0].folder / f"{jobs[0].name}{name}", endings)
+    for job in jobs:
+        tell(job.notes)
+    return jobs, path
 
 
 def finite(text: str) -> float:

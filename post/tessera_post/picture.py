@@ -10,11 +10,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from tessera_post.body import Clip, Frame, Layer, make_layers
-from tessera_post.cli import tell, wrote
+from tessera_post.cli import wrote
 from tessera_post.errors import PostError
 from tessera_post.fields import Quantity, parse
-from tessera_post.job import Job, check_units, labels_of, open_jobs
-from tessera_post.output import PICTURES, find_output, finite
+from tessera_post.job import Job, check_units, labels_of
+from tessera_post.output import finite, open_for_drawing
 from tessera_post.panels import Panel, Sheet, compose, pixels_of
 from tessera_post.scene import Renderer, find_view, find_window
 from tessera_post.style import make_scale, save
@@ -109,11 +109,7 @@ def add_look(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Draws the picture."""
-    jobs = open_jobs(options.job)
-    default = jobs[0].folder / f"{jobs[0].name}_picture.png"
-    path = find_output(options.output, default, PICTURES)
-    for job in jobs:
-        tell(job.notes)
+    jobs, path = open_for_drawing(options, "_picture.png")
     figure = draw(jobs, options_of(options))
     save(figure, path)
     wrote(path)

@@ -11,11 +11,11 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tessera_post.cli import tell, wrote
+from tessera_post.cli import wrote
 from tessera_post.curve import number
 from tessera_post.fields import Quantity
-from tessera_post.job import Job, labels_of, open_jobs
-from tessera_post.output import PICTURES, find_output, finite
+from tessera_post.job import Job, labels_of
+from tessera_post.output import finite, open_for_drawing
 from tessera_post.picture import PictureOptions, find_field, parse_limits
 from tessera_post.style import COLORS, colors_of, plt, save, shown
 
@@ -66,12 +66,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Draws the scatter and prints the statistics of the last output."""
-    jobs = open_jobs(options.job)
-    default = jobs[0].folder / f"{jobs[0].name}_scatter.png"
-    path = find_output(options.output, default, PICTURES)
+    jobs, path = open_for_drawing(options, "_scatter.png")
     limits = parse_limits(options.range)
-    for job in jobs:
-        tell(job.notes)
     exact = [(number(value, "--exact"), label) for value, label in options.exact]
     quantity = find_field(jobs, PictureOptions(field=options.field))
     scatters = [
