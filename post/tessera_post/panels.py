@@ -18,6 +18,7 @@ LARGEST = 5.6  # side of a panel [inch]
 WIDEST = 13.0  # all panels of a row [inch]
 NARROWEST = 1.7  # panel [inch]
 LETTER = 0.0076  # width of a letter, over the size of the font [inch per point]
+BAR_LETTER = 0.088  # letter beside the colour bar [inch]
 TITLE_SIZES = (7.0, 11.0)  # smallest and largest font [point]
 MOST_CATEGORIES = 12  # in a legend
 AXIS_NAMES = "xyz"
@@ -72,7 +73,8 @@ def compose(rows: Sequence[Sequence[Panel]], sheet: Sheet) -> Figure:
     beside, above = (0.75, 1.05) if plane else (0.15, 0.6)
     bar = 1.15 if sheet.has_bar or has_legend(sheet) else 0.1
     total = n_columns * (width + 0.15) + beside + bar
-    size = max(total, 4.0), n_rows * (height + above) + (0.35 if sheet.title else 0.0)
+    tall = n_rows * (height + above) + (0.35 if sheet.title else 0.0)
+    size = max(total, 4.0), max(tall, BAR_LETTER * len(bar_label(sheet)) + 0.4)
     figure, grid = plt.subplots(
         n_rows, n_columns, figsize=size, squeeze=False, sharex=True, sharey=True
     )
@@ -188,6 +190,13 @@ def draw_ruler(axes: Axes, sheet: Sheet) -> None:
     )
 
 
+def bar_label(sheet: Sheet) -> str:
+    """What stands beside the colour bar."""
+    if not sheet.has_bar or sheet.quantity is None:
+        return ""
+    return sheet.units.axis(sheet.quantity.label, sheet.quantity.dimension)
+
+
 def add_bar(figure: Figure, grid: np.ndarray, sheet: Sheet, height: float) -> None:
     """The colour bar of all panels."""
     scale, quantity = sheet.scale, sheet.quantity
@@ -196,7 +205,7 @@ def add_bar(figure: Figure, grid: np.ndarray, sheet: Sheet, height: float) -> No
     bar = figure.colorbar(
         ScalarMappable(scale.norm, scale.cmap),
         ax=grid.ravel().tolist(),
-        label=sheet.units.axis(quantity.label, quantity.dimension),
+        label=bar_label(sheet),
         extend=scale.extend,
         shrink=min(0.85, 4.5 / height),
         aspect=25,

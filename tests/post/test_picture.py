@@ -337,3 +337,10 @@ def test_ticks_of_the_footing_do_not_overlap(example, monkeypatch, post):
     boxes = [text.get_window_extent() for text in labels]
     assert len(boxes) >= 3
     assert all(left.x1 < right.x0 for left, right in itertools.pairwise(boxes))
+
+
+def test_label_of_the_bar_fits_on_a_flat_picture(bar):
+    figure = picture.draw([open_job(str(bar))], PictureOptions(field="LE:min"))
+    figure.canvas.draw()
+    box = figure.axes[-1].yaxis.label.get_window_extent()
+    assert 0.0 < box.y0 < box.y1 < figure.bbox.height
