@@ -1,7 +1,5 @@
 """Every command on every kind of job, and on what is no job."""
 
-import subprocess
-
 import h5py
 import pytest
 from post_runs import bar_deck
@@ -199,22 +197,6 @@ def test_default_field_is_one_that_all_jobs_have(post, bar, run_deck, tmp_path):
     first, second = (line.split(": ", 1)[1] for line in out.splitlines()[:2])
     assert first == second
     assert first.endswith(" -")
-
-
-@pytest.mark.parametrize("command", ["picture", "curve", "report"])
-def test_running_job_is_shown_as_far_as_it_goes(post, tessera_release, tmp_path, command):
-    """Again and again, while the program writes an increment every few milliseconds."""
-    (tmp_path / "bar.inp").write_text(bar_deck(inc=20000, size=5e-5), encoding="utf-8")
-    status = tmp_path / "bar.sta"
-    with subprocess.Popen([str(tessera_release), "-q", "bar.inp"], cwd=tmp_path) as process:
-        while not status.exists() or status.read_text().count("\n") < 5:
-            assert process.poll() is None
-        for _ in range(3):
-            assert process.poll() is None
-            code, _, err = post(*arguments(command, tmp_path / "bar", tmp_path / "out"))
-            assert code == 0, err
-            assert "has not finished" in err
-        process.kill()
 
 
 def test_name_of_the_mesh_file_means_the_job(post, bar, tmp_path):
