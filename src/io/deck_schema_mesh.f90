@@ -148,16 +148,22 @@ contains
                                             meaning="lines hold first, last, step"))
     call add_parameter(schema, value_rule_t("ELSET", value_name, required=.false., group=1, &
                                             meaning="takes the nodes of this element set"))
+    call add_parameter(schema, value_rule_t("BOX", value_flag, required=.false., group=1, &
+                                            meaning="takes the nodes in boxes"))
     call add_layout(schema, 1, many, layout_t("ELSET"))
     call add_range_layout(schema)
+    call add_box_layout(schema)
     call add_layout(schema, 1, many, layout_t(repeats=.true.))
     call add_field(schema, value_rule_t("node", value_item, meaning="node, or name of a node set"))
 
     call add_keyword(schema, "ELSET", "mesh", in_model, once_never, "A set of elements.")
     call add_parameter(schema, value_rule_t("ELSET", value_name, meaning="name of the set"))
-    call add_parameter(schema, value_rule_t("GENERATE", value_flag, required=.false., &
+    call add_parameter(schema, value_rule_t("GENERATE", value_flag, required=.false., group=1, &
                                             meaning="lines hold first, last, step"))
+    call add_parameter(schema, value_rule_t("BOX", value_flag, required=.false., group=1, &
+                                            meaning="takes the elements with centroid in boxes"))
     call add_range_layout(schema)
+    call add_box_layout(schema)
     call add_layout(schema, 1, many, layout_t(repeats=.true.))
     call add_field(schema, value_rule_t("element", value_item, &
                                         meaning="element, or name of an element set"))
@@ -175,6 +181,20 @@ contains
     call add_field(schema, value_rule_t("step", value_integer, required=.false., range="> 0", &
                                         default="1", meaning="from one number to the next"))
   end subroutine add_range_layout
+
+  !> Data lines of a set with BOX.
+  pure subroutine add_box_layout(schema)
+    type(schema_t), intent(inout) :: schema !! its last keyword gets a layout
+    integer :: i
+
+    call add_layout(schema, 1, many, layout_t("BOX"))
+    do i = 1, 3
+      call add_field(schema, value_rule_t("from "//achar(iachar("w") + i), value_real, &
+                                          required=i < 3, meaning="lower limit"))
+      call add_field(schema, value_rule_t("to "//achar(iachar("w") + i), value_real, &
+                                          required=i < 3, meaning="upper limit"))
+    end do
+  end subroutine add_box_layout
 
   !> *SURFACE.
   pure subroutine add_surface(schema)

@@ -1,5 +1,6 @@
 !> Builds the sets that the deck defines: *NSET, *ELSET and *SURFACE.
 module mpm_set_builder
+  use mpm_box_set, only: add_elements_in_box, add_nodes_in_box
   use mpm_build_context, only: at_field, at_parameter, build_context_t, define_name, fault, &
     & is_element_set, is_node_set, name_hint, place_t, set_names, use_name
   use mpm_deck_card, only: deck_t, field_count, field_integer, field_is_integer, field_text, &
@@ -57,6 +58,9 @@ contains
     do j = 1, size(deck%card(i_card)%data)
       if (has_parameter(deck%card(i_card), "GENERATE")) then
         call add_element_range(list, mesh, deck, context, [i_card, j])
+        cycle
+      else if (has_parameter(deck%card(i_card), "BOX")) then
+        call add_elements_in_box(list%body, mesh%parent, deck, context, [i_card, j])
         cycle
       end if
       do k = 1, field_count(deck%card(i_card)%data(j))
@@ -118,6 +122,9 @@ contains
     do j = 1, size(deck%card(i_card)%data)
       if (has_parameter(deck%card(i_card), "GENERATE")) then
         call add_node_range(list, mesh, deck, context, [i_card, j])
+        cycle
+      else if (has_parameter(deck%card(i_card), "BOX")) then
+        call add_nodes_in_box(list, mesh%parent, deck, context, [i_card, j])
         cycle
       end if
       do k = 1, field_count(deck%card(i_card)%data(j))
