@@ -10,7 +10,7 @@ module mpm_box_set
   private
   public :: add_elements_in_box, add_nodes_in_box
 
-  real(dp), parameter :: slack = 1.0e-9_dp !! how far outside still counts, over the size of the mesh
+  real(dp), parameter :: slack = 1.0e-9_dp !! distance outside that counts, over mesh size
 
 contains
 
