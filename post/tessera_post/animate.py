@@ -16,7 +16,14 @@ from tessera_post.errors import PostError
 from tessera_post.job import Job, check_units, labels_of
 from tessera_post.output import finite, open_for_drawing
 from tessera_post.panels import Panel, Sheet, compose, pixels_of
-from tessera_post.picture import PictureOptions, add_look, find_field, options_of, title_of
+from tessera_post.picture import (
+    PictureOptions,
+    add_look,
+    categories_of,
+    find_field,
+    options_of,
+    title_of,
+)
 from tessera_post.scene import Renderer, Window, find_view, find_window
 from tessera_post.style import ColorScale, make_scale, plt
 
@@ -66,7 +73,7 @@ class Film:
         self._quantity = find_field(jobs, look)
         self._labels = labels_of(jobs)
         self._view = find_view(look.view, jobs[0].n_dim)
-        window, self._scale = self._survey()
+        window, self._scale, self._categories = self._survey()
         self._window = window.zoomed(look.zoom)
         self._units = jobs[0].units
 
@@ -74,25 +81,30 @@ class Film:
         """Number of frames."""
         return len(self._rows)
 
-    def _survey(self) -> tuple[Window, ColorScale]:
-        """The window and the colour scale that hold all frames."""
+    def _survey(self) -> tuple[Window, ColorScale, tuple[int, ...]]:
+        """The window, the colour scale and the numbers of things that hold all frames."""
         windows, ends = [], []
+        categories: set[int] = set()
         for row in self._rows:
             for frame in row:
                 layers = make_layers(frame, self._look.what, self._quantity)
                 bodies = [layer.data for layer in layers if layer.data.n_points > 0]
                 windows.append(find_window(bodies, self._view))
                 values = layers[0].values
+                categories.update(categories_of(self._quantity, [values]))
                 if values is not None and np.isfinite(values).any():
                     ends.append(np.array([np.nanmin(values), np.nanmax(values)]))
-        return union(windows), make_scale(self._quantity, ends, self._look.limits)
+        scale = make_scale(self._quantity, ends, self._look.limits)
+        return union(windows), scale, tuple(sorted(categories))
 
     def images(self) -> Iterator[np.ndarray]:
         """(height, width, 3) pictures with even sides, as MP4 needs them."""
         pixels = pixels_of(self._window, len(self._rows[0]))
         renderer = Renderer(self._view, self._window, pixels)
         sheet = Sheet(
-            self._view, self._window, self._units, self._quantity, self._scale, self._look.title
+            *(self._view, self._window, self._units, self._quantity, self._scale),
+            title=self._look.title,
+            categories=self._categories,
         )
         try:
             for row in self._rows:

@@ -116,10 +116,9 @@ class Places:
 
 def moment(job: Job, time: float) -> str:
     """A total time in words, with its increment."""
-    times = job.history["time"]
-    if len(times) == 0:
+    if len(job.history["time"]) == 0:
         return f"time {time:g}"
-    return f"time {time:g}, increment {int(np.abs(times - time).argmin())}"
+    return f"time {time:g}, increment {job.increment_at(time)}"
 
 
 def values_of(series: Series, name: str, output: int) -> np.ndarray:

@@ -34,7 +34,7 @@ def export_csv(job: Job, options: argparse.Namespace) -> None:
     if options.output == STDOUT:
         write_table(sys.stdout, comments, columns)
         return
-    increment = increment_at(job, float(series.times[output]))
+    increment = job.increment_at(float(series.times[output]))
     path = options.output or job.folder / f"{job.name}_{what}_{increment:04d}.csv"
     refuse_existing([path], options.force)
     with Batch() as batch, batch.open_name(path).open("w", encoding="utf-8") as file:
@@ -57,12 +57,6 @@ def output_of(job: Job, series: Series, options: argparse.Namespace) -> int:
             f" {one_of([f'{value:g}' for value in series.times])}"
         )
     return nearest
-
-
-def increment_at(job: Job, time: float) -> int:
-    """The increment of a total time, counted over all steps."""
-    times = job.history["time"]
-    return int(np.abs(times - time).argmin()) if len(times) else 0
 
 
 def place_columns(series: Series, what: str, output: int) -> Columns:
@@ -105,7 +99,7 @@ def comment_lines(job: Job, what: str, time: float) -> list[str]:
         f"# job {job.name}, deck {job.deck_name}, {job.formulation}",
         f"# {job.heading}",
         f"# units: {units}" if job.text("units") else "# units: not stated by the deck",
-        f"# {what} at time {time!r}, increment {increment_at(job, time)}",
+        f"# {what} at time {time!r}, increment {job.increment_at(time)}",
     ]
 
 

@@ -179,10 +179,14 @@ class Job:
     @cached_property
     def increments(self) -> np.ndarray:
         """(n_steps) the increment of each output, counted over all steps from 0, before loading."""
-        times = self.history["time"]
-        if len(times) == 0:
+        if len(self.history["time"]) == 0:
             return np.arange(self.points.n_steps)
-        return np.abs(times[None, :] - self.points.times[:, None]).argmin(axis=1)
+        return np.array([self.increment_at(time) for time in self.points.times])
+
+    def increment_at(self, time: float) -> int:
+        """The increment nearest to a total time, counted over all steps; 0 without a history."""
+        times = self.history["time"]
+        return int(np.abs(times - time).argmin()) if len(times) else 0
 
     def output_of(self, increment: int | None = None, time: float | None = None) -> int:
         """The output at an increment (negative: from the last one) or at a total time.

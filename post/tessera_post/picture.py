@@ -246,7 +246,7 @@ def categories_of(quantity: Quantity, values: Sequence[np.ndarray | None]) -> tu
     """Numbers of things for the legend; none for other quantities."""
     if not quantity.is_category:
         return ()
-    there = np.concatenate([v for v in values if v is not None])
+    there = np.concatenate([np.empty(0), *(v for v in values if v is not None)])
     return tuple(int(v) for v in np.unique(there[np.isfinite(there)]))
 
 

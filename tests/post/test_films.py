@@ -5,10 +5,11 @@ import imageio.v3 as iio
 import numpy as np
 import pytest
 from PIL import Image
-from tessera_post import deformed, scatter
+from tessera_post import animate, deformed, scatter
 from tessera_post.animate import Film
 from tessera_post.job import open_job
 from tessera_post.picture import PictureOptions, frames_of
+from tessera_post.style import plt
 from test_picture import drawn, is_blank, rows  # noqa: F401
 
 
@@ -127,6 +128,21 @@ def test_film_keeps_camera_and_scale(bar, drawn):  # noqa: F811
         stress = file["VTKHDF/PointData/S"][:, 0]
     assert drawn[0][2].low <= stress.min()
     assert drawn[0][2].high == pytest.approx(stress.max())
+
+
+def test_film_names_the_numbers_of_things(bar, monkeypatch):
+    sheets = []
+
+    def keep(rows, sheet):
+        sheets.append(sheet)
+        return plt.figure()
+
+    monkeypatch.setattr(animate, "compose", keep)
+    film = Film([open_job(str(bar))], PictureOptions(field="PATCH"), 1)
+    list(film.images())
+    with h5py.File(bar.with_name("bar.vtkhdf"), locking=False) as file:
+        patches = np.unique(file["VTKHDF/PointData/PATCH"][()])
+    assert {sheet.categories for sheet in sheets} == {tuple(patches)}
 
 
 @pytest.mark.parametrize(
