@@ -6,7 +6,7 @@ module mpm_text
   private
   public :: to_upper, same_name, normalize_keyword, nearest_word
   public :: bytes_of_character
-  public :: parse_integer, parse_real, parse_real_list, integer_text, real_text
+  public :: parse_integer, parse_real, parse_real_list, integer_text, real_text, full_text
 
   integer, parameter :: i64 = selected_int_kind(18)
 
@@ -320,10 +320,27 @@ contains
 
   !> Short text of a real: up to 6 significant digits, no trailing zeros, `0.25`, `1e-5`, `3`.
   pure function real_text(value) result(text)
-    real(dp), intent(in) :: value !! any finite real
+    real(dp), intent(in) :: value !! any real
     character(:), allocatable :: text
-    character(32) :: buffer
-    character(8) :: form
+
+    text = text_of_digits(value, 6)
+  end function real_text
+
+  !> Text of a real that gives back a decimal number of up to 15 digits as it was written.
+  pure function full_text(value) result(text)
+    real(dp), intent(in) :: value !! any real
+    character(:), allocatable :: text
+
+    text = text_of_digits(value, 15)
+  end function full_text
+
+  !> Text of a real, rounded, without trailing zeros.
+  pure function text_of_digits(value, n_digits) result(text)
+    real(dp), intent(in) :: value    !! any real
+    integer, intent(in)  :: n_digits !! most significant digits, 6 to 17
+    character(:), allocatable :: text
+    character(40) :: buffer
+    character(12) :: form
     integer :: exponent, point
 
     if (.not. ieee_is_finite(value)) then
@@ -331,17 +348,19 @@ contains
       text = trim(buffer)
       return
     end if
-    write (buffer, "(es13.5e3)") value
+    write (form, "(a,i0,a)") "(es40.", n_digits - 1, "e3)"
+    write (buffer, form) value
+    buffer = adjustl(buffer)
     point = index(buffer, "E")
     read (buffer(point + 1:), "(i5)") exponent
     if (exponent >= -4 .and. exponent <= 5) then
-      write (form, "(a,i0,a)") "(f32.", 5 - exponent, ")"
+      write (form, "(a,i0,a)") "(f40.", n_digits - 1 - exponent, ")"
       write (buffer, form) value
       text = without_trailing_zeros(trim(adjustl(buffer)))
     else
-      text = without_trailing_zeros(trim(adjustl(buffer(:point - 1))))//"e"//integer_text(exponent)
+      text = without_trailing_zeros(buffer(:point - 1))//"e"//integer_text(exponent)
     end if
-  end function real_text
+  end function text_of_digits
 
   !> A decimal fraction without zeros at its end, and without a point at its end.
   pure function without_trailing_zeros(text) result(short)

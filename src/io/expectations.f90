@@ -7,7 +7,7 @@ module mpm_expectations
   use mpm_patches, only: patches_t
   use mpm_point_fields, only: point_values
   use mpm_run_state, only: run_state_t
-  use mpm_text, only: integer_text, real_text
+  use mpm_text, only: full_text, integer_text, real_text
   implicit none
   private
   public :: verdict_t, collect_expectations, evaluate_expectations, expectation_times
@@ -192,14 +192,14 @@ contains
     else
       line = line//"frozen "
     end if
-    line = line//real_text(verdict%expected%value)//" +- " &
+    line = line//full_text(verdict%expected%value)//" +- " &
            //real_text(tolerance_of(verdict%expected))
     if (.not. verdict%reached) then
       line = line//", time not reached: FAILED"
     else if (verdict%met) then
-      line = line//", found "//real_text(verdict%found)//": met"
+      line = line//", found "//full_text(verdict%found)//": met"
     else
-      line = line//", found "//real_text(verdict%found)//": FAILED"
+      line = line//", found "//full_text(verdict%found)//": FAILED"
     end if
   end function verdict_line
 

@@ -1,0 +1,1 @@
+"""Runs the verification cases and judges their results: `tools/verify`."""

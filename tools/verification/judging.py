@@ -1,0 +1,197 @@
+"""Judges the runs of a case: exit codes, *EXPECT verdicts, measures, orders."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from tessera_post.log import Verdict
+
+from verification.case import MOST_SECONDS, Case, Measure, Study
+from verification.measuring import Found
+from verification.running import DeckRun
+
+FROZEN_RTOL = 1e-6  # of the frozen value of a measure
+EXPECTATION_FAILED = 7  # exit code
+
+
+@dataclass(frozen=True)
+class Row:
+    """What was found in one run, beside what it should be."""
+
+    deck: str
+    quantity: str
+    found: float  # NaN: there is no value
+    exact: float | None = None
+    tolerance: float | None = None  # of found - exact
+    met: bool | None = None  # None: nothing exact
+    frozen: float | None = None
+    frozen_met: bool | None = None  # None: nothing frozen
+    place: str = ""  # file:line of the frozen line, or empty
+
+    @property
+    def failed(self) -> bool:
+        """Whether anything that was claimed is not so."""
+        return self.met is False or self.frozen_met is False
+
+    @property
+    def error(self) -> float | None:
+        """Found less exact, over the exact value unless it is 0."""
+        return None if self.exact is None else relative(self.found - self.exact, self.exact)
+
+    @property
+    def error_limit(self) -> float | None:
+        """The tolerance, relative where the error is."""
+        if self.exact is None or self.tolerance is None:
+            return None
+        return relative(self.tolerance, self.exact)
+
+
+@dataclass(frozen=True)
+class StudyResult:
+    """The order that a study found."""
+
+    study: Study
+    errors: tuple[float, ...]
+    order: float
+
+    @property
+    def failed(self) -> bool:
+        """Whether the error falls too slowly; NaN is too slow."""
+        return not self.order >= self.study.order
+
+
+@dataclass
+class CaseResult:
+    """All that is known about a case after its runs."""
+
+    case: Case
+    runs: list[DeckRun]
+    rows: list[Row] = field(default_factory=list)
+    studies: list[StudyResult] = field(default_factory=list)
+    problems: list[str] = field(default_factory=list)  # each a failure
+    warnings: list[str] = field(default_factory=list)
+
+    @property
+    def n_failed(self) -> int:
+        """Number of things that are not as they should be."""
+        n_rows = sum(row.failed for row in self.rows)
+        return n_rows + sum(study.failed for study in self.studies) + len(self.problems)
+
+
+def relative(value: float, reference: float) -> float:
+    """A value over the size of another one, as it is when that is 0."""
+    return value / abs(reference) if reference != 0.0 else value
+
+
+def judge(
+    case: Case, runs: list[DeckRun], found: Sequence[Found], timed: bool = False
+) -> CaseResult:
+    """Judges what the decks of a case and its measures gave; timed: checks the labels, too."""
+    result = CaseResult(case, runs)
+    for run in runs:
+        result.problems += problems_of_run(run)
+        if timed and run.deck.label == "quick" and run.cpu_seconds > MOST_SECONDS:
+            result.warnings.append(
+                f"{run.deck.file} took {run.cpu_seconds:.1f} s: a quick deck takes less than"
+                f" {MOST_SECONDS:g} s"
+            )
+        verdicts = run.log.verdicts if run.log else []
+        result.rows += rows_of_verdicts(run.deck.file, verdicts)
+    for measure in case.measures:
+        of_measure = [each for each in found if each.measure == measure.name]
+        result.rows += [row_of_measure(measure, each) for each in of_measure if not each.problem]
+        result.problems += [each.problem for each in of_measure if each.problem]
+    have_run = {run.deck.file for run in runs}
+    for study in case.studies:
+        if have_run.issuperset(study.decks):
+            result.studies.append(judge_study(study, result.rows))
+    return result
+
+
+def problems_of_run(run: DeckRun) -> list[str]:
+    """What is wrong with a run as such."""
+    wanted = run.deck.exit_code
+    verdicts = run.log.verdicts if run.log else []
+    if run.exit_code == EXPECTATION_FAILED and wanted == 0 and verdicts:
+        return []  # the rows say which
+    if run.exit_code != wanted:
+        why = f": {run.message}" if run.message else ""
+        return [f"{run.deck.file} ended with exit code {run.exit_code}, expected {wanted}{why}"]
+    if run.log is None:
+        return [f"{run.deck.file} left no log"]
+    return []
+
+
+def rows_of_verdicts(deck: str, verdicts: Sequence[Verdict]) -> list[Row]:
+    """One row per analytic value; a frozen value of the same quantity joins it."""
+    rows: list[Row] = []
+    for verdict in verdicts:
+        quantity = f"{verdict.what} at {verdict.time}"
+        value = float(verdict.value)
+        if verdict.kind == "analytic":
+            tolerance = float(verdict.tolerance)
+            exact = {"exact": value, "tolerance": tolerance, "met": verdict.met}
+            rows.append(Row(deck, quantity, number(verdict.found), **exact))
+            continue
+        frozen = {"frozen": value, "frozen_met": verdict.met, "place": verdict.place}
+        open_rows = (
+            i for i, row in enumerate(rows) if row.quantity == quantity and row.frozen is None
+        )
+        i = next(open_rows, None)
+        if i is None:
+            rows.append(Row(deck, quantity, number(verdict.found), **frozen))
+        else:
+            rows[i] = replace(rows[i], **frozen)
+    return rows
+
+
+def number(text: str) -> float:
+    """What a verdict found; NaN when it was not reached."""
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
+
+
+def row_of_measure(measure: Measure, found: Found) -> Row:
+    """A row with what a measure of a deck should be."""
+    row = Row(found.deck, measure.name, found.value)
+    if measure.exact is not None:
+        tolerance = measure.atol + measure.rtol * abs(measure.exact)
+        met = abs(found.value - measure.exact) <= tolerance
+        row = replace(row, exact=measure.exact, tolerance=tolerance, met=met)
+    if measure.frozen is not None:
+        frozen = measure.frozen.get(found.deck, math.nan)
+        met = abs(found.value - frozen) <= FROZEN_RTOL * abs(frozen)
+        row = replace(row, frozen=frozen, frozen_met=met)
+    return row
+
+
+def judge_study(study: Study, rows: Sequence[Row]) -> StudyResult:
+    """The slope of log error over log h."""
+    errors = tuple(error_of(study, deck, rows) for deck in study.decks)
+    return StudyResult(study, errors, order_of(study.h, errors))
+
+
+def error_of(study: Study, deck: str, rows: Sequence[Row]) -> float:
+    """The error of one deck; NaN when it has not the quantity, or more than once."""
+    if study.measure is not None:
+        found = [row for row in rows if (row.deck, row.quantity) == (deck, study.measure)]
+        errors = [abs(row.found - (row.exact or 0.0)) for row in found]
+    else:
+        found = [row for row in rows if row.deck == deck and row.exact is not None]
+        errors = [abs(row.error or 0.0) for row in found if is_subject(row, study.expect or "")]
+    return errors[0] if len(errors) == 1 else math.nan
+
+
+def is_subject(row: Row, expect: str) -> bool:
+    """Whether `SUM RF2[FOOTING]`, or this with ` at TIME` behind it, is the quantity of a row."""
+    return expect in (row.quantity, row.quantity.rpartition(" at ")[0])
+
+
+def order_of(h: Sequence[float], errors: Sequence[float]) -> float:
+    """Least-squares slope; NaN when an error is 0 or not known."""
+    if not all(error > 0.0 for error in errors):
+        return math.nan
+    return float(np.polyfit(np.log(h), np.log(errors), 1)[0])
