@@ -40,6 +40,8 @@ def make_parser() -> argparse.ArgumentParser:
     add("--exe", type=Path, metavar="PATH", help="another build, such as the one with checks")
     add("--freeze", action="store_true", help="write what was found into the frozen values")
     add("--page", action="store_true", help="write docs/verification.md and draw its figures")
+    add("--cases", type=Path, default=CASES, metavar="DIR",
+        help="folder of the cases (default: input/verification)")  # fmt: skip
     add("-o", "--output", type=Path, default=ROOT / "build" / "verification", metavar="DIR",
         help="results (default: build/verification)")  # fmt: skip
     return parser
@@ -57,11 +59,11 @@ def main(arguments: list[str] | None = None) -> int:
     """The program."""
     parser = make_parser()
     options = parser.parse_args(arguments)
-    if options.page and (options.case or not options.all):
-        parser.error("--page: expected --all and no CASE, as the page shows everything")
+    if options.page and (options.case or not options.all or options.cases != CASES):
+        parser.error("--page: expected --all, no CASE and no --cases: the page shows everything")
     program = (options.exe or PROGRAM).resolve()
     try:
-        cases = load_cases(CASES, options.case)
+        cases = load_cases(options.cases.resolve(), options.case)
         if options.list:
             print("\n".join(list_text(case) for case in cases))
             return 0
@@ -97,7 +99,7 @@ def verify(cases: list[Case], settings: Settings, options: argparse.Namespace) -
         runner.close()
     if options.freeze:
         for path in (path for result in results for path in freeze(result)):
-            print(f"froze {path.relative_to(ROOT)}")
+            print(f"froze {path}")
     if options.page:
         write_page(results)
     print(summary_text(results, time.monotonic() - start))
