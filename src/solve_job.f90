@@ -16,7 +16,7 @@ module mpm_solve_job
   use mpm_point_location, only: locate_points, location_report_t, locator_t, lost_is_error
   use mpm_point_update, only: accept_points
   use mpm_run_output, only: run_output_t, write_attempt, write_increment, write_last_state
-  use mpm_run_state, only: make_run_state, run_state_t
+  use mpm_run_state, only: make_run_state, note_locking, run_state_t
   use mpm_sparsity, only: build_pattern, pattern_is_current
   use mpm_system, only: body_t, find_active, free_system, open_system, system_t
   use mpm_text, only: integer_text, real_text
@@ -50,6 +50,7 @@ contains
                         model%patches%n)
     state%started = wall_time()
     call find_active(analysis%system, analysis%body%points)
+    if (output%metered) call note_locking(state, analysis%body, analysis%system)
     call write_increment(output, model, analysis%body%mesh, analysis%body%points, state, error)
     do i = 1, size(model%step)
       call prepare_loads(model%step(i)%load, model%mesh, model%points)
@@ -111,6 +112,7 @@ contains
         if (allocated(error)) return
         call locate_points(body%points, body%mesh, analysis%locator, model%location, location)
         call note_location(state, schedule, location)
+        if (output%metered) call note_locking(state, body, system)
         call write_increment(output, model, body%mesh, body%points, state, error)
         if (allocated(error)) return
         if (location%first_lost > 0 .and. model%location%lost_action == lost_is_error) then

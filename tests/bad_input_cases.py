@@ -1584,6 +1584,39 @@ job.inp:27:40: error: component 3 of U: expected 1 to 2
 """),
     ),
     Case(
+        "expect_checkerboard_of_set",
+        PLANE,
+        [("QUANTITY=U, SET=Y1, COMPONENT=2", "QUANTITY=CHECKERBOARD, SET=ALL")],
+        2,
+        text("""
+job.inp:27:37: error: CHECKERBOARD is one number of the run: expected no SET
+   27 | *EXPECT, QUANTITY=CHECKERBOARD, SET=ALL
+      |                                     ^~~
+"""),
+    ),
+    Case(
+        "expect_statistic_of_checkerboard",
+        PLANE,
+        [("QUANTITY=U, SET=Y1, COMPONENT=2", "QUANTITY=CHECKERBOARD, STATISTIC=MAX")],
+        2,
+        text("""
+job.inp:27:43: error: CHECKERBOARD is one number of the run: expected no STATISTIC
+   27 | *EXPECT, QUANTITY=CHECKERBOARD, STATISTIC=MAX
+      |                                           ^~~
+"""),
+    ),
+    Case(
+        "expect_component_of_checkerboard",
+        PLANE,
+        [("QUANTITY=U, SET=Y1, COMPONENT=2", "QUANTITY=CHECKERBOARD, COMPONENT=1")],
+        2,
+        text("""
+job.inp:27:43: error: CHECKERBOARD is a number without components: expected no COMPONENT
+   27 | *EXPECT, QUANTITY=CHECKERBOARD, COMPONENT=1
+      |                                           ^
+"""),
+    ),
+    Case(
         "expect_time_after_step",
         PLANE,
         [("COMPONENT=2", "COMPONENT=2, TIME=2")],

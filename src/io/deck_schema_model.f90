@@ -18,6 +18,8 @@ contains
     call add_formulation(schema)
     call add_material_points(schema)
     call add_motion_and_loss(schema)
+    call add_keyword(schema, "LOCKING METER", "method", in_model, once_in_deck, &
+                     "Writes into the log after every increment how far the mesh is from locking.")
     call add_material(schema)
     call add_plastic(schema)
     call add_amplitude(schema)

@@ -199,12 +199,12 @@ contains
     call add_keyword(schema, "EXPECT", "proof", in_step, once_never, &
                      "A value that the run must reach; a miss ends it with exit code 7.")
     call add_parameter(schema, value_rule_t("QUANTITY", value_choice, &
-                                            choices="RF|U|S|TAU|LE|PEEQ|J|JBAR|VOL", &
+                                            choices="RF|U|S|TAU|LE|PEEQ|F|J|JBAR|VOL|CHECKERBOARD", &
                                             meaning="quantity"))
     call add_parameter(schema, value_rule_t("SET", value_name, required=.false., &
                                             meaning="node or element set; without: all points"))
     call add_parameter(schema, value_rule_t("COMPONENT", value_integer, required=.false., &
-                                            range=">= 1, <= 6", meaning="component"))
+                                            range=">= 1, <= 9", meaning="component"))
     call add_parameter(schema, value_rule_t("TIME", value_real, required=.false., range=">= 0", &
                                             meaning="total time; without: end of the step"))
     call add_parameter(schema, value_rule_t("STATISTIC", value_choice, required=.false., &

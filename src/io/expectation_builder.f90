@@ -34,7 +34,12 @@ contains
       new%card = i_card
       call check_time(new, deck, context, time)
       call check_component(new, model, deck, context)
-      call find_items(new, model, deck, context)
+      new%set = parameter_text(card, "SET", "")
+      if (new%quantity == "CHECKERBOARD") then
+        call check_scalar(new, deck, context)
+      else
+        call find_items(new, model, deck, context)
+      end if
       do j = 1, size(card%data)
         associate (line => card%data(j))
           new%analytic = to_upper(field_text(line, 1)) == "ANALYTIC"
@@ -78,6 +83,8 @@ contains
       n = model%mesh%n_dim
     case ("S", "TAU", "LE")
       n = 6
+    case ("F")
+      n = 9
     case default
       n = 0
     end select
@@ -94,15 +101,29 @@ contains
     end if
   end subroutine check_component
 
+  !> One number of the run takes neither set nor statistic.
+  subroutine check_scalar(new, deck, context)
+    type(expectation_t), intent(in) :: new          !! with quantity
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    character(9), parameter :: parameter_name(2) = [character(9) :: "SET", "STATISTIC"]
+    integer :: i
+
+    do i = 1, size(parameter_name)
+      if (.not. has_parameter(deck%card(new%card), trim(parameter_name(i)))) cycle
+      call fault(context, deck, at_parameter(new%card, trim(parameter_name(i))), new%quantity &
+                 //" is one number of the run: expected no "//trim(parameter_name(i)))
+    end do
+  end subroutine check_scalar
+
   !> Nodes of a node set for RF and U, else elements of an element set; all points without a set.
   subroutine find_items(new, model, deck, context)
-    type(expectation_t), intent(inout) :: new       !! items are set
+    type(expectation_t), intent(inout) :: new       !! with quantity and set; items are set
     type(model_t), intent(in) :: model              !! with mesh
     type(deck_t), intent(in) :: deck                !! the deck
     type(build_context_t), intent(inout) :: context !! takes errors
     integer :: found
 
-    new%set = parameter_text(deck%card(new%card), "SET", "")
     new%of_nodes = new%quantity == "RF"
     if (new%quantity == "U" .and. len(new%set) > 0) new%of_nodes = &
       & find_node_set(model%mesh, new%set) > 0 .or. find_element_set(model%mesh, new%set) == 0

@@ -11,7 +11,7 @@ module mpm_expectations
   implicit none
   private
   public :: verdict_t, collect_expectations, evaluate_expectations, expectation_times
-  public :: n_failed_expectations, verdict_line
+  public :: is_expected, n_failed_expectations, verdict_line
 
   real(dp), parameter :: time_tolerance = 1.0e-9_dp !! relative
 
@@ -45,6 +45,18 @@ contains
       end do
     end do
   end subroutine collect_expectations
+
+  !> Whether a deck has an expectation about a quantity.
+  pure logical function is_expected(verdicts, quantity)
+    type(verdict_t), intent(in) :: verdicts(:) !! of the run
+    character(*), intent(in) :: quantity       !! deck name, upper case
+    integer :: i
+
+    is_expected = .false.
+    do i = 1, size(verdicts)
+      is_expected = is_expected .or. verdicts(i)%expected%quantity == quantity
+    end do
+  end function is_expected
 
   !> Total times at which an increment must end.
   pure function expectation_times(verdicts) result(times)
@@ -97,7 +109,9 @@ contains
     type(run_state_t), intent(in) :: state   !! nodal values
     real(dp) :: value
 
-    if (is_nodal(expected)) then
+    if (expected%quantity == "CHECKERBOARD") then
+      value = state%checkerboard
+    else if (is_nodal(expected)) then
       value = statistic_of(nodal_values(state, expected%quantity, max(1, expected%component), &
                                         expected%item), expected%statistic)
     else
@@ -208,7 +222,9 @@ contains
     type(expectation_t), intent(in) :: expected
     character(:), allocatable :: text
 
-    text = expected%statistic//" "//expected%quantity
+    text = expected%quantity
+    if (text == "CHECKERBOARD") return
+    text = expected%statistic//" "//text
     if (expected%component > 0) text = text//integer_text(expected%component)
     if (allocated(expected%set)) then
       if (len(expected%set) > 0) text = text//"["//expected%set//"]"

@@ -33,6 +33,8 @@ contains
     end if
     text = text//line_end//"  lost points: "//lost_action_text(model%location%lost_action) &
            //", tolerance "//real_text(model%location%tolerance)//line_end
+    if (model%locking_meter) text = text//"  locking meter: the continuum has " &
+      & //integer_text(model%mesh%n_dim)//" unknowns per volumetric constraint"//line_end
     do i = 1, size(model%material)
       text = text//material_text(model%material(i))
     end do

@@ -43,6 +43,8 @@ contains
         call build_motion(model, deck, context, i)
       case ("LOST POINTS")
         call build_location(model, deck, i)
+      case ("LOCKING METER")
+        model%locking_meter = .true.
       case default
         cycle
       end select

@@ -86,6 +86,7 @@ module mpm_model
     type(points_t)            :: points
     type(mesh_motion_t)       :: motion
     type(location_settings_t) :: location
+    logical                   :: locking_meter = .false. !! lines of the meter in the log
     type(amplitude_t), allocatable :: amplitude(:)
     type(step_t), allocatable :: step(:)
   end type model_t

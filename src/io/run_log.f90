@@ -11,7 +11,8 @@ module mpm_run_log
   use mpm_text_file, only: close_text_file, open_text_file, text_file_t, write_line
   implicit none
   private
-  public :: run_log_t, attempt_text, close_log, log_attempt, log_message, log_summary, open_log
+  public :: run_log_t, attempt_text, close_log, locking_text, log_attempt, log_message
+  public :: log_summary, open_log
 
   character(*), parameter :: line_end = new_line("a")
 
@@ -121,6 +122,17 @@ contains
     if (report%worst_element > 0) text = text//", element "//integer_text(report%worst_element)
     if (report%worst_point > 0) text = text//", point "//integer_text(report%worst_point)
   end function worst_text
+
+  !> What the locking meter shows after an accepted increment.
+  pure function locking_text(state) result(text)
+    type(run_state_t), intent(in) :: state !! after the increment, metered
+    character(:), allocatable :: text
+
+    text = "  locking meter: " &
+           //real_text(state%n_unknowns/real(max(1, state%n_constraints), dp)) &
+           //" unknowns per constraint, checkerboard " &
+           //real_text(state%checkerboard)//" ("//integer_text(state%n_checked)//" elements)"
+  end function locking_text
 
   !> Writes resultants of the node sets, verdicts and the time spent.
   subroutine log_summary(log, model, state, verdicts, exit_code, error)

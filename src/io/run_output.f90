@@ -3,7 +3,7 @@ module mpm_run_output
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_text
   use mpm_error, only: error_t
-  use mpm_expectations, only: collect_expectations, evaluate_expectations, verdict_t
+  use mpm_expectations, only: collect_expectations, evaluate_expectations, is_expected, verdict_t
   use mpm_hdf5_file, only: flush_hdf5_file
   use mpm_history, only: open_history, units_of, write_history_row
   use mpm_history_columns, only: history_column_t, history_columns, history_values
@@ -16,7 +16,8 @@ module mpm_run_output
   use mpm_result_paths, only: result_paths_t
   use mpm_results_file, only: close_results, is_field_output_due, open_results, results_file_t, &
                               write_increment_fields
-  use mpm_run_log, only: attempt_text, close_log, log_attempt, log_summary, open_log, run_log_t
+  use mpm_run_log, only: attempt_text, close_log, locking_text, log_attempt, log_message, &
+                         log_summary, open_log, run_log_t
   use mpm_run_state, only: estimated_time_left, run_info_t, run_state_t
   use mpm_run_tables, only: append_history, append_iterations, append_ledger, close_tables, &
                             open_tables, run_tables_t
@@ -38,6 +39,7 @@ module mpm_run_output
     type(verdict_t), allocatable :: verdict(:)       !! of *EXPECT
     logical :: quiet = .false.                       !! no progress on stderr
     logical :: verbose = .false.                     !! every Newton iteration on stderr
+    logical :: metered = .false.                     !! log or deck ask for the locking meter
     integer :: n_shown = -1                          !! accepted increments at the last field output
   end type run_output_t
 
@@ -56,6 +58,7 @@ contains
     output%verbose = info%verbose
     output%column = history_columns(model)
     call collect_expectations(output%verdict, model)
+    output%metered = model%locking_meter .or. is_expected(output%verdict, "CHECKERBOARD")
     call open_log(output%log, paths%log, model, info, error)
     if (allocated(error)) return
     call open_status(output%status, paths%status, model, error)
@@ -103,6 +106,9 @@ contains
     real(dp), allocatable :: values(:)
     logical :: due
 
+    if (model%locking_meter .and. state%step > 0) &
+      call log_message(output%log, locking_text(state), error)
+    if (allocated(error)) return
     allocate (values(size(output%column)))
     values(:) = history_values(output%column, points, model%patches, state)
     call write_history_row(output%history, state, values, error)

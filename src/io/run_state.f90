@@ -3,11 +3,13 @@ module mpm_run_state
   use mpm_build_info, only: build_compiler => compiler, build_version => version, compiler_flags, &
                             git_revision, hdf5_version, metis_version, umfpack_version
   use mpm_kinds, only: dp
+  use mpm_locking_meter, only: measure_checkerboard, n_active_patches
   use mpm_model, only: model_t
+  use mpm_system, only: body_t, system_t
   implicit none
   private
   public :: run_info_t, run_state_t
-  public :: end_of_run, estimated_time_left, make_run_info, make_run_state
+  public :: end_of_run, estimated_time_left, make_run_info, make_run_state, note_locking
 
   !> What stays the same during a run and is no part of the model, or its name in the results.
   type :: run_info_t
@@ -42,6 +44,10 @@ module mpm_run_state
     integer  :: n_active_elements = 0   !! elements that host a point
     integer  :: n_lost = 0              !! points lost so far
     integer  :: n_extrapolated = 0      !! points just outside the mesh
+    integer  :: n_unknowns = 0          !! free displacements of the increment
+    integer  :: n_constraints = 0       !! its volumetric constraints
+    integer  :: n_checked = 0           !! elements in the checkerboard index
+    real(dp), allocatable :: checkerboard     !! index of the pressure [-]; unallocated: not asked
     real(dp), allocatable :: reaction(:, :)   !! (n_dim, n_node)  internal minus applied force where
                                               !!                  prescribed, 0 elsewhere [force]
     real(dp), allocatable :: applied(:, :)    !! (n_dim, n_node)  external nodal forces [force]
@@ -68,6 +74,18 @@ contains
     allocate (state%delta_j(n_el), source=1.0_dp)
     allocate (state%delta_j_patch(n_patch), source=1.0_dp)
   end subroutine make_run_state
+
+  !> What the locking meter shows. Source: theory.md (22).
+  pure subroutine note_locking(state, body, system)
+    type(run_state_t), intent(inout) :: state !! takes counts and index
+    type(body_t), intent(in)   :: body        !! converged, points located in the new mesh
+    type(system_t), intent(in) :: system      !! of the increment before it
+
+    state%n_unknowns = system%dofs%n
+    state%n_constraints = n_active_patches(body%patches, system%element)
+    if (.not. allocated(state%checkerboard)) allocate (state%checkerboard)
+    call measure_checkerboard(state%checkerboard, state%n_checked, body%mesh, body%points)
+  end subroutine note_locking
 
   !> Total time at the end of the last step.
   pure function end_of_run(model) result(time)

@@ -1,5 +1,6 @@
 !> The group /tessera of JOB.vtkhdf: the deck, the program, and tables over the run.
 module mpm_run_tables
+  use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
   use mpm_equilibrium, only: newton_report_t
   use mpm_error, only: error_t
   use mpm_hdf5_file, only: hdf5_file_t, make_group, write_integers_attribute, write_text, &
@@ -19,15 +20,16 @@ module mpm_run_tables
     "attempt", "iteration", "residual", "kinematics", "stress", "assembly", "factorisation", &
     "solve"]
   integer, parameter :: n_iteration_integers = 4 !! leading columns of integers
-  character(13), parameter :: ledger_columns(9) = [character(13) :: "step", "increment", "time", &
-    "count", "mass", "volume", "lost", "extrapolated", "centre"]
+  character(13), parameter :: ledger_columns(10) = [character(13) :: "step", "increment", "time", &
+    "count", "mass", "volume", "lost", "extrapolated", "centre", "checkerboard"]
   integer, parameter :: column_of_centre = 9
+  integer, parameter :: column_of_checkerboard = 10
 
   !> The open tables; each column is a dataset.
   type :: run_tables_t
     type(series_t), allocatable :: history(:)    !! step, increment, time, then the *HISTORY ones
     type(series_t), allocatable :: iterations(:) !! (10)
-    type(series_t), allocatable :: ledger(:)     !! (9)
+    type(series_t), allocatable :: ledger(:)     !! (10)
   end type run_tables_t
 
 contains
@@ -166,10 +168,13 @@ contains
   subroutine append_ledger(tables, file, state, ledger, error)
     type(run_tables_t), intent(inout) :: tables      !! longer
     type(hdf5_file_t), intent(in) :: file            !! JOB.vtkhdf
-    type(run_state_t), intent(in) :: state           !! step, increment, time
+    type(run_state_t), intent(in) :: state           !! step, increment, time, checkerboard
     type(ledger_t), intent(in) :: ledger             !! after the increment
     type(error_t), allocatable, intent(out) :: error !! exit_file
+    real(dp) :: checkerboard(1)
 
+    checkerboard = ieee_value(1.0_dp, ieee_quiet_nan)
+    if (allocated(state%checkerboard)) checkerboard = state%checkerboard
     call append_rows(tables%ledger(1), file, [int(state%step, ip)], error)
     call append_rows(tables%ledger(2), file, [int(state%increment, ip)], error)
     call append_rows(tables%ledger(3), file, [state%time], error)
@@ -179,6 +184,7 @@ contains
     call append_rows(tables%ledger(7), file, [int(ledger%n_lost, ip)], error)
     call append_rows(tables%ledger(8), file, [int(ledger%n_extrapolated, ip)], error)
     call append_rows(tables%ledger(column_of_centre), file, reshape(ledger%centre, [3, 1]), error)
+    call append_rows(tables%ledger(column_of_checkerboard), file, checkerboard, error)
   end subroutine append_ledger
 
   !> Closes all tables.
