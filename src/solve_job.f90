@@ -10,7 +10,7 @@ module mpm_solve_job
   use mpm_increments, only: accept_step, begin_step, cut_back, schedule_t, start_increment
   use mpm_kinds, only: dp, ip
   use mpm_linear_solver, only: analyse, solver_memory, solver_ok
-  use mpm_mesh_motion, only: move_mesh
+  use mpm_mesh_layout, only: lay_out_mesh
   use mpm_model, only: formulation_fbar, formulation_standard, model_t
   use mpm_patches, only: patches_of_single_elements
   use mpm_point_location, only: locate_points, location_report_t, locator_t, lost_is_error
@@ -108,7 +108,7 @@ contains
         end if
         call accept_points(body, system)
         call accept_step(schedule, report%n_iterations)
-        call lay_out_mesh(body, system, model, error)
+        call lay_out_mesh(body, system, model%motion, error)
         if (allocated(error)) return
         call locate_points(body%points, body%mesh, analysis%locator, model%location, location)
         call note_location(state, schedule, location)
@@ -323,26 +323,6 @@ contains
     state%n_extrapolated = location%n_extrapolated
     state%n_lost = state%n_lost + location%n_lost
   end subroutine note_location
-
-  !> Moves the mesh with its driver, or leaves it where it was. Source: theory.md (17).
-  subroutine lay_out_mesh(body, system, model, error)
-    type(body_t), intent(inout) :: body
-    type(system_t), intent(in)  :: system
-    type(model_t), intent(in)   :: model
-    type(error_t), allocatable, intent(out) :: error
-    real(dp) :: displacement
-    integer :: inverted
-
-    if (.not. model%motion%active) return
-    associate (n_dim => body%mesh%n_dim, motion => model%motion)
-      displacement = dot_product(motion%direction(1:n_dim), system%dofs%prescribed(:, motion%driver(1)))
-      call move_mesh(body%mesh, motion, displacement, inverted)
-    end associate
-    if (inverted == 0) return
-    call make_error(error, exit_model, "error: *MOVING MESH would turn element "// &
-                    integer_text(model%mesh%parent_label(model%mesh%parent(inverted)))// &
-                    " inside out: expected a driver that stays on its side of the fixed plane")
-  end subroutine lay_out_mesh
 
   !> A point left the mesh and the deck wants that to be an error.
   subroutine report_lost_point(error, body, location, model)

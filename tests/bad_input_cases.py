@@ -1485,14 +1485,64 @@ job.inp:8:1: error: moving mesh: driver node 6 is off the plane of driver node 3
 """),
     ),
     Case(
-        "moving_mesh_without_prescribed_driver",
+        "moving_mesh_with_half_prescribed_driver",
         PLANE,
-        [("*MATERIAL, NAME", "*MOVING MESH, DRIVER=X1, DIRECTION=1,0, FIXED=X0\n*MATERIAL, NAME")],
+        [
+            (
+                "*MATERIAL, NAME",
+                "*MOVING MESH, DRIVER=X1, DIRECTION=1,0, FIXED=X0\n*MATERIAL, NAME",
+            ),
+            ("X0, 1, 1\n", "X0, 1, 1\n3, 1, 1, 0.001\n"),
+        ],
         3,
         text("""
-job.inp:8:22: error: node 3 of the driver has no displacement in direction 1, or another one than the rest, in step PUSH: expected one *BOUNDARY value for the set
+job.inp:8:22: error: node 6 of the driver has no displacement in direction 1, or another one than the rest, in step PUSH: expected one *BOUNDARY value for the set, or none
     8 | *MOVING MESH, DRIVER=X1, DIRECTION=1,0, FIXED=X0
       |                      ^~
+"""),
+    ),
+    Case(
+        "carried_mesh_with_driver",
+        PLANE,
+        [("*MATERIAL, NAME", "*MOVING MESH, TYPE=LAGRANGIAN, DRIVER=Y1\n*MATERIAL, NAME")],
+        2,
+        text("""
+job.inp:8:39: error: DRIVER of *MOVING MESH: expected only with TYPE=DRIVER
+    8 | *MOVING MESH, TYPE=LAGRANGIAN, DRIVER=Y1
+      |                                       ^~
+"""),
+    ),
+    Case(
+        "carried_mesh_with_direction_and_plane",
+        PLANE,
+        [
+            (
+                "*MATERIAL, NAME",
+                "*MOVING MESH, TYPE=LAGRANGIAN, DIRECTION=0,1, FIXED=Y0\n*MATERIAL, NAME",
+            )
+        ],
+        2,
+        text("""
+job.inp:8:42: error: DIRECTION of *MOVING MESH: expected only with TYPE=DRIVER
+    8 | *MOVING MESH, TYPE=LAGRANGIAN, DIRECTION=0,1, FIXED=Y0
+      |                                          ^~~
+job.inp:8:53: error: FIXED of *MOVING MESH: expected only with TYPE=DRIVER
+    8 | *MOVING MESH, TYPE=LAGRANGIAN, DIRECTION=0,1, FIXED=Y0
+      |                                                     ^~
+"""),
+    ),
+    Case(
+        "driver_by_default_without_its_plane",
+        PLANE,
+        [("*MATERIAL, NAME", "*MOVING MESH, DRIVER=Y1\n*MATERIAL, NAME")],
+        2,
+        text("""
+job.inp:8:1: error: missing parameter DIRECTION of *MOVING MESH: expected DIRECTION with reals separated by commas
+    8 | *MOVING MESH, DRIVER=Y1
+      | ^~~~~~~~~~~~
+job.inp:8:1: error: missing parameter FIXED of *MOVING MESH: expected FIXED with a name of at most 80 characters
+    8 | *MOVING MESH, DRIVER=Y1
+      | ^~~~~~~~~~~~
 """),
     ),
     Case(

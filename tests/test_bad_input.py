@@ -159,7 +159,8 @@ def head(keyword, left_out, *last):
         groups |= {rule.get("exclusive")} - {None}
         parts.append(written(rule))
     needs = [rule["only_with"] for rule in left_out if "only_with" in rule]
-    parts = [part for part in parts if not any(part.split("=")[0] in need for need in needs)]
+    given = {need.split("=")[0] for need in needs}
+    parts = [part for part in parts if part.split("=")[0] not in given]
     return ", ".join(parts + needs + list(last))
 
 

@@ -61,11 +61,16 @@ contains
     type(schema_t), intent(inout) :: schema !! gets the keywords
 
     call add_keyword(schema, "MOVING MESH", "method", in_model, once_in_deck, &
-                     "Lays the mesh out anew after every increment: it follows a driver plane.")
-    call add_parameter(schema, value_rule_t("DRIVER", value_name, &
+                     "Lays the mesh out anew after every increment: it follows a driver plane "// &
+                     "or the body.")
+    call add_parameter(schema, value_rule_t("TYPE", value_choice, required=.false., &
+                                            choices="DRIVER|LAGRANGIAN", default="DRIVER", &
+                                            meaning="follows a plane, or goes with the body"))
+    call add_parameter(schema, value_rule_t("DRIVER", value_name, only_with="TYPE=DRIVER", &
                                             meaning="node set of the plane that moves"))
-    call add_parameter(schema, value_rule_t("DIRECTION", value_reals, meaning="normal, x,y[,z]"))
-    call add_parameter(schema, value_rule_t("FIXED", value_name, &
+    call add_parameter(schema, value_rule_t("DIRECTION", value_reals, only_with="TYPE=DRIVER", &
+                                            meaning="normal, x,y[,z]"))
+    call add_parameter(schema, value_rule_t("FIXED", value_name, only_with="TYPE=DRIVER", &
                                             meaning="node set of the plane that stays"))
     call add_keyword(schema, "LOST POINTS", "method", in_model, once_in_deck, &
                      "What happens to a material point outside the mesh.")

@@ -176,16 +176,12 @@ contains
     type(deck_t), intent(in)           :: deck     !! complete deck
     integer, intent(in)                :: i_card   !! card of the deck
     type(diagnostics_t), intent(inout) :: diag     !! gets the error
-    integer :: equals, i
+    integer :: i
 
-    equals = index(expected%only_with, "=")
-    if (equals > 0) then
-      if (.not. is_choice(parameter_text(deck%card(i_card), expected%only_with(:equals - 1), ""), &
-                          expected%only_with(equals + 1:))) &
-        call error_at_parameter(diag, deck, i_card, trim(expected%name), trim(expected%name)// &
-                                " of *"//trim(rule%keyword)//": expected only with "// &
-                                trim(expected%only_with))
-    end if
+    if (.not. is_wanted(rule, expected, deck%card(i_card))) &
+      call error_at_parameter(diag, deck, i_card, trim(expected%name), trim(expected%name)// &
+                              " of *"//trim(rule%keyword)//": expected only with "// &
+                              trim(expected%only_with))
     if (expected%group == 0) return
     do i = 1, rule%n_parameters
       if (rule%parameter(i)%name == expected%name) exit
@@ -196,6 +192,33 @@ contains
                               ": expected not together with "//trim(rule%parameter(i)%name))
     end do
   end subroutine check_company
+
+  !> Whether the other parameter that a parameter depends on has its value, by default too.
+  pure logical function is_wanted(rule, expected, card) result(wanted)
+    type(keyword_rule_t), intent(in) :: rule     !! rule of the card
+    type(value_rule_t), intent(in)   :: expected !! rule of a parameter
+    type(deck_card_t), intent(in)    :: card     !! the card
+    character(:), allocatable :: other
+    integer :: equals
+
+    equals = index(expected%only_with, "=")
+    wanted = equals == 0
+    if (wanted) return
+    other = expected%only_with(:equals - 1)
+    wanted = is_choice(parameter_text(card, other, &
+                                      trim(rule%parameter(rule_of(rule, other))%default)), &
+                       expected%only_with(equals + 1:))
+  end function is_wanted
+
+  !> Whether a card needs a parameter that it does not have; a misspelt one has its own message.
+  pure logical function is_needed(rule, missing, card) result(needed)
+    type(keyword_rule_t), intent(in) :: rule    !! rule of the card
+    type(value_rule_t), intent(in)   :: missing !! rule of the parameter
+    type(deck_card_t), intent(in)    :: card    !! the card
+
+    needed = missing%required .and. is_wanted(rule, missing, card) &
+             .and. .not. is_misspelt(rule, card, trim(missing%name))
+  end function is_needed
 
   !> Reports a required parameter that the card does not have.
   pure subroutine check_missing(rule, i_rule, deck, i_card, diag)
@@ -208,8 +231,7 @@ contains
     integer :: i
 
     associate (missing => rule%parameter(i_rule))
-      if (.not. missing%required) return
-      if (is_misspelt(rule, deck%card(i_card), trim(missing%name))) return
+      if (.not. is_needed(rule, missing, deck%card(i_card))) return
       names = ""
       do i = 1, rule%n_parameters
         if (missing%group == 0 .or. rule%parameter(i)%group /= missing%group) cycle

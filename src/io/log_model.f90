@@ -3,6 +3,7 @@ module mpm_log_model
   use mpm_kinds, only: dp
   use mpm_material, only: law_von_mises, material_t
   use mpm_mesh, only: face_set_t, mesh_t
+  use mpm_mesh_motion, only: mesh_motion_t
   use mpm_model, only: formulation_fbar, model_t, step_t
   use mpm_point_location, only: lost_is_error, lost_is_frozen
   use mpm_text, only: integer_text, real_text
@@ -25,12 +26,7 @@ contains
                                            model%formulation == formulation_fbar))//line_end &
            //"  patches: source "//model%patch_source
     if (model%patch_source == "METIS") text = text//", size "//integer_text(model%patch_size)
-    text = text//line_end//"  mesh: "//trim(merge("moving", "reset ", model%motion%active))
-    if (model%motion%active) then
-      text = text//", driver "//integer_text(size(model%motion%driver))//" nodes, fixed " &
-             //integer_text(size(model%motion%fixed))//" nodes, direction" &
-             //reals_text(model%motion%direction)
-    end if
+    text = text//line_end//"  mesh: "//motion_text(model%motion)
     text = text//line_end//"  lost points: "//lost_action_text(model%location%lost_action) &
            //", tolerance "//real_text(model%location%tolerance)//line_end
     if (model%locking_meter) text = text//"  locking meter: the continuum has " &
@@ -43,6 +39,20 @@ contains
     end do
     text = text//mesh_text(model)
   end function model_text
+
+  !> What the mesh does after an increment.
+  pure function motion_text(motion) result(text)
+    type(mesh_motion_t), intent(in) :: motion
+    character(:), allocatable :: text
+
+    text = "reset"
+    if (motion%with_body) then
+      text = "moving with the body"
+    else if (motion%active) then
+      text = "moving, driver "//integer_text(size(motion%driver))//" nodes, fixed " &
+             //integer_text(size(motion%fixed))//" nodes, direction"//reals_text(motion%direction)
+    end if
+  end function motion_text
 
   !> One material.
   pure function material_text(material) result(text)

@@ -98,6 +98,9 @@ contains
     integer :: driver, fixed
 
     associate (card => deck%card(i_card))
+      model%motion%with_body = parameter_choice(card, "TYPE", "DRIVER") == "LAGRANGIAN"
+      model%motion%active = model%motion%with_body
+      if (model%motion%with_body) return
       call require_node_set(context, deck, model%mesh, at_parameter(i_card, "DRIVER"), &
                             parameter_text(card, "DRIVER", ""), driver)
       call require_node_set(context, deck, model%mesh, at_parameter(i_card, "FIXED"), &

@@ -1,15 +1,15 @@
 !> Builds the model that a deck describes. All faults are collected, each with its place.
 module mpm_model_builder
-  use mpm_build_context, only: at_card, at_parameter, build_context_t, fault, report_unused
+  use mpm_build_context, only: at_card, build_context_t, fault, report_unused
   use mpm_deck_card, only: deck_t, parameter_text
   use mpm_diagnostics, only: diagnostics_t, to_error
+  use mpm_driver_check, only: check_driver
   use mpm_error, only: error_t, exit_model
-  use mpm_kinds, only: dp
   use mpm_labelled_mesh, only: labelled_mesh_t
   use mpm_material_builder, only: build_amplitudes, build_materials
   use mpm_mesh_builder, only: build_linear_mesh, build_parents
   use mpm_method_builder, only: build_method, build_points
-  use mpm_model, only: model_t, step_t
+  use mpm_model, only: model_t
   use mpm_set_builder, only: build_sets
   use mpm_step_builder, only: build_steps
   use mpm_support_check, only: find_free_modes
@@ -107,56 +107,5 @@ contains
                  //"that hold it", code=exit_model)
     end do
   end subroutine check_supports
-
-  !> The mesh follows the prescribed displacement of the driver: all its nodes need the same.
-  subroutine check_driver(model, deck, context)
-    type(model_t), intent(in) :: model              !! complete
-    type(deck_t), intent(in) :: deck                !! the deck
-    type(build_context_t), intent(inout) :: context !! takes errors
-    integer :: i, j, d, card
-
-    if (.not. model%motion%active) return
-    card = 0
-    do i = 1, size(deck%card)
-      if (deck%card(i)%keyword == "MOVING MESH") card = i
-    end do
-    do i = 1, size(model%step)
-      do d = 1, model%mesh%n_dim
-        if (abs(model%motion%direction(d)) <= 1.0e-12_dp) cycle
-        do j = 1, size(model%motion%driver)
-          if (is_driven(model%step(i), model%motion%driver(j), model%motion%driver(1), d)) cycle
-          call fault(context, deck, at_parameter(card, "DRIVER"), "node " &
-            & //integer_text(model%mesh%node_label(model%motion%driver(j)))//" of the driver has " &
-            & //"no displacement in direction "//integer_text(d)//", or another one than the " &
-            & //"rest, in step "//model%step(i)%name//": expected one *BOUNDARY value for the " &
-            & //"set", code=exit_model)
-          return
-        end do
-      end do
-    end do
-  end subroutine check_driver
-
-  !> Whether a node moves like the first node of the driver.
-  pure logical function is_driven(step, node, first, direction) result(driven)
-    type(step_t), intent(in) :: step !! with constraints
-    integer, intent(in) :: node      !! node of the driver
-    integer, intent(in) :: first     !! first node of the driver
-    integer, intent(in) :: direction !! 1..n_dim
-    integer :: i, i_node, i_first
-
-    i_node = 0
-    i_first = 0
-    do i = 1, size(step%constraint)
-      if (step%constraint(i)%direction /= direction) cycle
-      if (any(step%constraint(i)%node == node)) i_node = i
-      if (any(step%constraint(i)%node == first)) i_first = i
-    end do
-    driven = i_node > 0 .and. i_first > 0
-    if (.not. driven .or. i_node == i_first) return
-    associate (a => step%constraint(i_node), b => step%constraint(i_first))
-      driven = abs(a%value - b%value) <= 0.0_dp .and. abs(a%start - b%start) <= 0.0_dp &
-                  .and. a%amplitude == b%amplitude
-    end associate
-  end function is_driven
 
 end module mpm_model_builder

@@ -1,5 +1,6 @@
 !> JOB.sta: one line per attempted increment.
 module mpm_status_file
+  use mpm_driver_check, only: is_driver_prescribed
   use mpm_error, only: error_t
   use mpm_kinds, only: dp
   use mpm_model, only: model_t
@@ -34,13 +35,14 @@ contains
     if (.not. allocated(error)) call write_line(status%file, head, error)
   end subroutine open_status
 
-  !> The driver is that of the moving mesh, else the set of the first displacement that is not 0.
+  !> The driver is that of the moving mesh where a step prescribes it, else the set of the first
+  !! displacement that is not 0: a plane that the mesh only follows has no reaction.
   pure subroutine find_driver(status, model)
     type(status_file_t), intent(inout) :: status !! its driver and direction are set
     type(model_t), intent(in) :: model           !! moving mesh and prescribed displacements
     integer :: i, j
 
-    if (model%motion%active) then
+    if (pushes(model)) then
       status%driver = model%motion%driver
       status%direction = model%motion%direction
       return
@@ -58,6 +60,18 @@ contains
     end do
     allocate (status%driver(0))
   end subroutine find_driver
+
+  !> Whether the mesh has a driver that pushes the body in some step.
+  pure logical function pushes(model) result(found)
+    type(model_t), intent(in) :: model !! moving mesh and prescribed displacements
+    integer :: i
+
+    found = .false.
+    if (.not. model%motion%active .or. model%motion%with_body) return
+    do i = 1, size(model%step)
+      found = found .or. is_driver_prescribed(model, i)
+    end do
+  end function pushes
 
   !> Reaction of the driver set in its direction.
   pure function driver_reaction(status, state) result(reaction)

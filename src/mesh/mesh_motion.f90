@@ -6,13 +6,15 @@ module mpm_mesh_motion
   use mpm_text, only: integer_text
   implicit none
   private
-  public :: check_motion, mesh_motion_t, move_mesh
+  public :: carry_mesh, check_motion, is_along, mesh_motion_t, move_mesh
 
   real(dp), parameter :: planar = 1.0e-6_dp !! farthest node off its plane, in sizes of the mesh
 
-  !> The moving mesh: driver and fixed plane with their common normal.
+  !> The moving mesh: driver and fixed plane with their common normal, or a mesh that the body
+  !! carries along.
   type :: mesh_motion_t
     logical :: active = .false.          !! .false.: the mesh is reset to where it was
+    logical :: with_body = .false.       !! .true.: nodes keep their displacement, no planes
     integer, allocatable :: driver(:)    !! nodes of the driver plane
     integer, allocatable :: fixed(:)     !! nodes of the fixed plane
     real(dp) :: direction(3) = 0.0_dp    !! unit normal of both planes
@@ -46,11 +48,44 @@ contains
         mesh%x(:, a) = mesh%x(:, a) + fraction*displacement*direction
       end do
     end associate
+    call renew_geometry(mesh, x_old, error_element)
+  end subroutine move_mesh
+
+  !> Lets the nodes of the body keep a displacement; the others stay where they are. Gradients and
+  !! volumes follow. Source: theory.md (17b). An element that would invert leaves the mesh as it
+  !! was.
+  pure subroutine carry_mesh(mesh, u, carried, error_element)
+    type(mesh_t), intent(inout) :: mesh          !! mesh, out coordinates, gradients, volumes
+    real(dp), intent(in)        :: u(:, :)       !! (n_dim, n_node)  displacement [length]
+    logical, intent(in)         :: carried(:)    !! (n_node)         node of an active element
+    integer, intent(out)        :: error_element !! first element that would invert, 0 if none
+
+    real(dp), allocatable :: x_old(:, :)
+
+    x_old = mesh%x
+    mesh%x = mesh%x + merge(u, 0.0_dp, spread(carried, 1, mesh%n_dim))
+    call renew_geometry(mesh, x_old, error_element)
+  end subroutine carry_mesh
+
+  !> Gradients and volumes at the new coordinates; the old coordinates when an element inverts.
+  pure subroutine renew_geometry(mesh, x_old, error_element)
+    type(mesh_t), intent(inout) :: mesh          !! with new coordinates
+    real(dp), intent(in)        :: x_old(:, :)   !! (n_dim, n_node)  coordinates before [length]
+    integer, intent(out)        :: error_element !! first element that would invert, 0 if none
+    integer :: none
+
     call build_geometry(mesh, error_element)
     if (error_element == 0) return
     mesh%x = x_old
-    call build_geometry(mesh, a)
-  end subroutine move_mesh
+    call build_geometry(mesh, none)
+  end subroutine renew_geometry
+
+  !> Whether a motion has a component along an axis.
+  elemental logical function is_along(component) result(along)
+    real(dp), intent(in) :: component !! of the unit direction of the motion [-]
+
+    along = abs(component) > 1.0e-12_dp
+  end function is_along
 
   !> Mean position of some nodes along the direction of motion.
   pure real(dp) function mean_height(mesh, motion, node) result(height)
@@ -69,7 +104,7 @@ contains
 
     real(dp) :: mesh_size
 
-    if (.not. motion%active) return
+    if (.not. motion%active .or. motion%with_body) return
     if (abs(sum(motion%direction(:mesh%n_dim)**2) - 1.0_dp) > planar) then
       call make_error(error, exit_model, &
         "moving mesh: wrong direction: expected a unit vector in the space of the mesh")
