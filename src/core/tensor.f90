@@ -7,7 +7,7 @@ module mpm_tensor
   use mpm_kinds, only: dp
   implicit none
   private
-  public :: deviator_norm, expm1, inverse, log1p, det_m1, tensor_from_voigt, trace
+  public :: cross_product, deviator_norm, expm1, inverse, log1p, det_m1, tensor_from_voigt, trace
   public :: push_forward_m1, voigt_from_tensor, voigt_row, voigt_column, identity
 
   integer, parameter :: voigt_row(6) = [1, 2, 3, 1, 2, 1]    !! first index of a Voigt component
@@ -120,5 +120,14 @@ contains
     mean = sum(voigt(1:3))/3.0_dp
     norm = sqrt(sum((voigt(1:3) - mean)**2) + 2.0_dp*sum(voigt(4:6)**2))
   end function deviator_norm
+
+  !> Vector product.
+  pure function cross_product(a, b) result(c)
+    real(dp), intent(in) :: a(3) !! (3)  first factor
+    real(dp), intent(in) :: b(3) !! (3)  second factor
+    real(dp) :: c(3)             !! (3)  a x b
+
+    c = [a(2)*b(3) - a(3)*b(2), a(3)*b(1) - a(1)*b(3), a(1)*b(2) - a(2)*b(1)]
+  end function cross_product
 
 end module mpm_tensor

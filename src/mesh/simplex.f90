@@ -1,6 +1,7 @@
 !> The linear simplex: 3-node triangle and 4-node tetrahedron.
 module mpm_simplex
   use mpm_kinds, only: dp
+  use mpm_tensor, only: cross_product
   implicit none
   private
   public :: distance_to_simplex, simplex_gradients, simplex_shape, simplex_size, simplex_volume
@@ -21,7 +22,7 @@ contains
     if (size(x, 1) == 2) then
       volume = (edge(1, 1)*edge(2, 2) - edge(2, 1)*edge(1, 2))/2.0_dp
     else
-      volume = dot_product(edge(:, 1), cross(edge(:, 2), edge(:, 3)))/6.0_dp
+      volume = dot_product(edge(:, 1), cross_product(edge(:, 2), edge(:, 3)))/6.0_dp
     end if
   end function simplex_volume
 
@@ -41,9 +42,9 @@ contains
       grad_shape(:, 2) = [x(2, 3) - x(2, 1), x(1, 1) - x(1, 3)]/(2.0_dp*volume)
       grad_shape(:, 3) = [x(2, 1) - x(2, 2), x(1, 2) - x(1, 1)]/(2.0_dp*volume)
     else
-      grad_shape(:, 2) = cross(x(:, 3) - x(:, 1), x(:, 4) - x(:, 1))/(6.0_dp*volume)
-      grad_shape(:, 3) = cross(x(:, 4) - x(:, 1), x(:, 2) - x(:, 1))/(6.0_dp*volume)
-      grad_shape(:, 4) = cross(x(:, 2) - x(:, 1), x(:, 3) - x(:, 1))/(6.0_dp*volume)
+      grad_shape(:, 2) = cross_product(x(:, 3) - x(:, 1), x(:, 4) - x(:, 1))/(6.0_dp*volume)
+      grad_shape(:, 3) = cross_product(x(:, 4) - x(:, 1), x(:, 2) - x(:, 1))/(6.0_dp*volume)
+      grad_shape(:, 4) = cross_product(x(:, 2) - x(:, 1), x(:, 3) - x(:, 1))/(6.0_dp*volume)
     end if
     do a = 2, size(x, 2)
       grad_shape(:, 1) = grad_shape(:, 1) - grad_shape(:, a)
@@ -127,14 +128,5 @@ contains
     shape(2:) = gram(:, m + 1)
     shape(1) = 1.0_dp - sum(shape(2:))
   end function projected_shape
-
-  !> Vector product.
-  pure function cross(a, b) result(c)
-    real(dp), intent(in) :: a(3) !! (3)  first factor
-    real(dp), intent(in) :: b(3) !! (3)  second factor
-    real(dp) :: c(3)             !! (3)  a x b
-
-    c = [a(2)*b(3) - a(3)*b(2), a(3)*b(1) - a(1)*b(3), a(1)*b(2) - a(2)*b(1)]
-  end function cross
 
 end module mpm_simplex
