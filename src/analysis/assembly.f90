@@ -5,6 +5,7 @@ module mpm_assembly
   use mpm_kinds, only: dp, ip
   use mpm_kinematics, only: kinematics_t
   use mpm_mesh, only: mesh_t
+  use mpm_nodal_frames, only: rotate_block
   use mpm_patches, only: patches_t
   use mpm_sparsity, only: assembly_map_t
   use mpm_tensor, only: tensor_from_voigt
@@ -57,6 +58,8 @@ contains
       !$omp do schedule(static)
       do i = map%color_first(color), map%color_first(color + 1) - 1
         call patch_tangent(block, map%color_patch(i), map, mesh, patches, kinematics, sums)
+        call rotate_block(block, map%frames, map%node(map%node_first(map%color_patch(i)): &
+                                                      map%node_first(map%color_patch(i) + 1) - 1))
         call scatter_block(tangent%val, map, map%color_patch(i), block)
       end do
       !$omp end do
@@ -83,7 +86,8 @@ contains
     end do
   end subroutine scatter_block
 
-  !> Product of the whole tangent, fixed directions included, with a nodal displacement.
+  !> Product of the whole tangent, fixed directions included, with a nodal displacement,
+  !! both along the global axes.
   subroutine apply_tangent(force, u, map, mesh, patches, kinematics, sums)
     real(dp), intent(out) :: force(:, :) !! (n_dim, n_node)  K u [force]
     real(dp), intent(in)  :: u(:, :)     !! (n_dim, n_node)  [length]

@@ -3,15 +3,17 @@ module mpm_dof_map
   use mpm_amplitude, only: amplitude_t, step_fraction, time_increment_t
   use mpm_kinds, only: dp
   use mpm_mesh, only: mesh_t
+  use mpm_nodal_frames, only: in_global_axes, in_local_axes, nodal_frames_t
   implicit none
   private
   public :: constraint_t, dof_map_t
-  public :: add_solution, gather_free, number_dofs, prescribed_total
+  public :: add_solution, gather_free, number_dofs, prescribed_total, turn_prescribed
 
-  !> A prescribed displacement of a step: one direction, the nodes of one set.
+  !> A prescribed displacement of a step: one direction, the nodes of one set. The
+  !! direction is one of the axes of each node.
   type :: constraint_t
     integer, allocatable :: node(:) !! nodes
-    integer  :: direction = 0       !! 1..n_dim
+    integer  :: direction = 0       !! 1..n_dim, along the axes of the node
     real(dp) :: value = 0.0_dp      !! total displacement at the end of the step [length]
     real(dp) :: start = 0.0_dp      !! total displacement at the start of the step [length]
     integer  :: amplitude = 0       !! index of the amplitude, 0 = linear ramp over the step
@@ -22,16 +24,20 @@ module mpm_dof_map
   !> Numbering of the unknowns of an increment.
   type :: dof_map_t
     integer :: n = 0                          !! unknowns
-    integer, allocatable  :: id(:, :)         !! (n_dim, n_node)  equation, 0 = fixed or inactive
-    logical, allocatable  :: fixed(:, :)      !! (n_dim, n_node)  .true. = prescribed
-    real(dp), allocatable :: prescribed(:, :) !! (n_dim, n_node)  in the increment [length]
+    integer, allocatable  :: id(:, :)         !! (n_dim, n_node)  equation of a direction of the
+                                              !! axes of the node, 0 = fixed or inactive
+    logical, allocatable  :: fixed(:, :)      !! (n_dim, n_node)  .true. = prescribed direction
+    real(dp), allocatable :: prescribed(:, :) !! (n_dim, n_node)  in the increment, along the
+                                              !! global axes [length]
+    type(nodal_frames_t)  :: frames           !! axes of the nodes
     logical, allocatable  :: active(:)        !! (n_node)         belongs to an active element
   end type dof_map_t
 
 contains
 
   !> Numbers the free displacements of active nodes, node by node, and sets the prescribed ones
-  !! of the increment. Where constraints meet, the last one holds.
+  !! of the increment. Where constraints meet, the last one holds. All nodes have global axes;
+  !! turn_prescribed gives some of them their own.
   pure subroutine number_dofs(dofs, mesh, active_element, constraints, increment, amplitudes)
     type(dof_map_t), intent(out) :: dofs               !! numbering
     type(mesh_t), intent(in) :: mesh                   !! connectivity
@@ -63,6 +69,18 @@ contains
       end do
     end do
   end subroutine number_dofs
+
+  !> Gives nodes axes of their own: their equations, and what is prescribed, were meant along these.
+  pure subroutine turn_prescribed(dofs, frames)
+    type(dof_map_t), intent(inout)   :: dofs   !! as numbered
+    type(nodal_frames_t), intent(in) :: frames !! axes of the nodes
+    integer :: a
+
+    dofs%frames = frames
+    do a = 1, size(dofs%prescribed, 2)
+      dofs%prescribed(:, a) = in_global_axes(frames, a, dofs%prescribed(:, a))
+    end do
+  end subroutine turn_prescribed
 
   !> Total prescribed displacement at a step time: from the start to the value in a linear ramp,
   !! or value times amplitude.
@@ -96,30 +114,38 @@ contains
                               amplitudes) - before
   end function prescribed_increment
 
-  !> Adds a vector of unknowns to a nodal array; prescribed and inactive entries stay.
+  !> Adds a vector of unknowns to a nodal array; prescribed and inactive directions stay.
+  !! Source: theory.md (19).
   pure subroutine add_solution(dofs, x, nodal)
     type(dof_map_t), intent(in) :: dofs        !! numbering
     real(dp), intent(in)    :: x(:)            !! (n)
-    real(dp), intent(inout) :: nodal(:, :)     !! (n_dim, n_node)
+    real(dp), intent(inout) :: nodal(:, :)     !! (n_dim, n_node)  along the global axes
+    real(dp) :: local(size(nodal, 1))
     integer :: i, a
 
     do a = 1, size(dofs%id, 2)
+      if (all(dofs%id(:, a) == 0)) cycle
+      local = 0.0_dp
       do i = 1, size(dofs%id, 1)
-        if (dofs%id(i, a) > 0) nodal(i, a) = nodal(i, a) + x(dofs%id(i, a))
+        if (dofs%id(i, a) > 0) local(i) = x(dofs%id(i, a))
       end do
+      nodal(:, a) = nodal(:, a) + in_global_axes(dofs%frames, a, local)
     end do
   end subroutine add_solution
 
-  !> Picks the entries of the unknowns out of a nodal array.
+  !> Picks the entries of the unknowns out of a nodal array. Source: theory.md (19).
   pure subroutine gather_free(dofs, nodal, vector)
     type(dof_map_t), intent(in) :: dofs        !! numbering
-    real(dp), intent(in)  :: nodal(:, :)       !! (n_dim, n_node)
+    real(dp), intent(in)  :: nodal(:, :)       !! (n_dim, n_node)  along the global axes
     real(dp), intent(out) :: vector(:)         !! (n)
+    real(dp) :: local(size(nodal, 1))
     integer :: i, a
 
     do a = 1, size(dofs%id, 2)
+      if (all(dofs%id(:, a) == 0)) cycle
+      local = in_local_axes(dofs%frames, a, nodal(:, a))
       do i = 1, size(dofs%id, 1)
-        if (dofs%id(i, a) > 0) vector(dofs%id(i, a)) = nodal(i, a)
+        if (dofs%id(i, a) > 0) vector(dofs%id(i, a)) = local(i)
       end do
     end do
   end subroutine gather_free

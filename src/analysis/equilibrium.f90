@@ -4,6 +4,7 @@ module mpm_equilibrium
   use mpm_dof_map, only: add_solution, gather_free
   use mpm_kinds, only: dp
   use mpm_linear_solver, only: factorize, solve, solver_memory, solver_ok
+  use mpm_nodal_frames, only: in_local_axes, part_along
   use mpm_system, only: body_t, evaluate, evaluation_inverted, evaluation_ok, system_t
   implicit none
   private
@@ -182,7 +183,8 @@ contains
     logical :: reacts(size(system%u, 1), size(system%u, 2))
 
     reacts = system%dofs%fixed .and. spread(system%dofs%active, 1, size(system%u, 1))
-    scale = max(norm2(merge(system%f_int, system%f_ext, reacts)), &
+    scale = max(norm2(part_along(system%dofs%frames, system%f_int, reacts) &
+                      + part_along(system%dofs%frames, system%f_ext, .not. reacts)), &
                 1.0e-6_dp*newton%stiffness*maxval(abs(system%u)))
   end function force_scale
 
@@ -202,12 +204,13 @@ contains
   pure subroutine find_worst_node(report, system)
     type(newton_report_t), intent(inout) :: report
     type(system_t), intent(in)           :: system
-    real(dp) :: largest, here
+    real(dp) :: largest, here, local(size(system%u, 1))
     integer :: a
 
     largest = -1.0_dp
     do a = 1, size(system%u, 2)
-      here = norm2(merge(system%f_ext(:, a) - system%f_int(:, a), 0.0_dp, system%dofs%id(:, a) > 0))
+      local = in_local_axes(system%dofs%frames, a, system%f_ext(:, a) - system%f_int(:, a))
+      here = norm2(merge(local, 0.0_dp, system%dofs%id(:, a) > 0))
       if (here > largest) then
         largest = here
         report%worst_node = a

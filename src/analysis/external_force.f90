@@ -25,6 +25,8 @@ module mpm_external_force
     real(dp) :: value(3) = 0.0_dp        !! at the end of the step: acceleration, (p, 0, 0),
                                          !! traction vector or nodal force vector
     real(dp) :: start(3) = 0.0_dp        !! at the start of the step
+    real(dp), allocatable :: axes(:, :, :) !! (n_dim, n_dim, n)  nodal: rows are the axes of each
+                                         !! node of item; unallocated: global axes
     integer  :: amplitude = 0            !! index of the amplitude, 0 = linear ramp over the step
     integer  :: card = 0                 !! index of the card in the deck, for messages
     logical, allocatable  :: point(:)    !! (n_point)  gravity: loaded points; by prepare_loads
@@ -47,6 +49,7 @@ contains
         call mark_points(loads(i), mesh, points)
         cycle
       end if
+      if (allocated(loads(i)%axes)) cycle
       if (allocated(loads(i)%nodal)) deallocate (loads(i)%nodal)
       allocate (loads(i)%nodal(mesh%n_dim, mesh%n_node), source=0.0_dp)
       if (loads(i)%kind == load_nodal) then
@@ -112,12 +115,28 @@ contains
       case (load_pressure)
         f = f + value(1)*loads(i)%nodal
       case default
+        if (allocated(loads(i)%axes)) then
+          call add_turned(f, loads(i), value(:mesh%n_dim))
+          cycle
+        end if
         do j = 1, mesh%n_dim
           f(j, :) = f(j, :) + value(j)*loads(i)%nodal(j, :)
         end do
       end select
     end do
   end subroutine external_force
+
+  !> Adds forces on nodes that have axes of their own. Source: theory.md (19).
+  pure subroutine add_turned(f, load, value)
+    real(dp), intent(inout) :: f(:, :) !! (n_dim, n_node)  [force]
+    type(load_t), intent(in) :: load   !! nodal, with axes
+    real(dp), intent(in) :: value(:)   !! (n_dim)  along the axes of each node [force]
+    integer :: i
+
+    do i = 1, size(load%item)
+      f(:, load%item(i)) = f(:, load%item(i)) + matmul(value, load%axes(:, :, i))
+    end do
+  end subroutine add_turned
 
   !> Value of a load at a step time.
   pure function load_value(load, time, period, amplitudes) result(value)

@@ -7,6 +7,7 @@ module mpm_sparsity
   use mpm_dof_map, only: dof_map_t
   use mpm_kinds, only: dp, ip
   use mpm_mesh, only: mesh_t
+  use mpm_nodal_frames, only: nodal_frames_t
   use mpm_patches, only: patches_t
   implicit none
   private
@@ -33,6 +34,7 @@ module mpm_sparsity
                                                   !! each colour
     logical, allocatable :: active_element(:)     !! (n_el)  elements that the map was built for
     logical, allocatable :: fixed(:, :)           !! (n_dim, n_node)  constraints likewise
+    type(nodal_frames_t) :: frames                !! axes of the nodes, the same in all increments
   end type assembly_map_t
 
   !> Lists of integers, one after another: list i is item(first(i):first(i+1)-1).
@@ -56,6 +58,7 @@ contains
     map%n_patch = patches%n
     map%active_element = active_element
     map%fixed = dofs%fixed
+    map%frames = dofs%frames
     call collect_nodes(map, patches, mesh)
     call invert_lists(patches_of_node, lists_t(map%node_first, map%node), mesh%n_node)
     call link_nodes(neighbours, map, patches_of_node)

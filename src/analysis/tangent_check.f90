@@ -8,6 +8,7 @@ module mpm_tangent_check
   use mpm_dof_map, only: add_solution
   use mpm_kinds, only: dp
   use mpm_material, only: law_von_mises
+  use mpm_nodal_frames, only: in_global_axes, in_local_axes, nodal_frames_t
   use mpm_system, only: body_t, evaluate, evaluation_ok, open_system, system_t
   implicit none
   private
@@ -144,9 +145,14 @@ contains
     torn_system%active = system%active
     torn_system%element = system%element
     torn_system%u = system%u(:, system%map%node)
+    torn_system%dofs%frames = system%dofs%frames
+    if (allocated(system%dofs%frames%of_node)) then
+      torn_system%dofs%frames%of_node = system%dofs%frames%of_node(system%map%node)
+    end if
   end subroutine tear
 
-  !> Derivative of the forces of every patch with respect to its local displacement k.
+  !> Derivative of the forces of every patch with respect to its local displacement k,
+  !! both along the axes of the nodes.
   subroutine difference_column(column, crossed, k, delta, torn, torn_system, system)
     real(dp), intent(out) :: column(:)  !! (n_dim times torn nodes)
     logical, intent(out)  :: crossed(:) !! (n_patch)  a point began or ceased to flow
@@ -155,20 +161,24 @@ contains
     type(body_t), intent(in)      :: torn
     type(system_t), intent(inout) :: torn_system
     type(system_t), intent(in)    :: system
-    real(dp), allocatable :: u(:, :), f_plus(:, :)
+    real(dp), allocatable :: u(:, :), f_plus(:, :), slope(:, :)
     integer, allocatable :: plastic(:), e_patch(:)
-    integer :: i, outcome
+    integer :: a, i, outcome
 
     u = torn_system%u
     e_patch = torn%patches%of_element(system%element)
-    call shift(torn_system%u, system%map%node_first, k, delta)
+    call shift(torn_system%u, torn_system%dofs%frames, system%map%node_first, k, delta)
     call evaluate(torn_system, torn, outcome)
     f_plus = torn_system%f_int
     plastic = torn_system%sums%plastic_in
     torn_system%u = u
-    call shift(torn_system%u, system%map%node_first, k, -delta)
+    call shift(torn_system%u, torn_system%dofs%frames, system%map%node_first, k, -delta)
     call evaluate(torn_system, torn, outcome)
-    column = reshape((f_plus - torn_system%f_int)/(2.0_dp*delta), [size(column)])
+    slope = (f_plus - torn_system%f_int)/(2.0_dp*delta)
+    do a = 1, size(slope, 2)
+      slope(:, a) = in_local_axes(torn_system%dofs%frames, a, slope(:, a))
+    end do
+    column = reshape(slope, [size(column)])
     crossed = .false.
     do i = 1, size(e_patch)
       associate (e => system%element(i))
@@ -180,19 +190,23 @@ contains
   end subroutine difference_column
 
   !> Moves local displacement k of every patch that has one.
-  pure subroutine shift(u, node_first, k, delta)
+  pure subroutine shift(u, frames, node_first, k, delta)
     real(dp), intent(inout) :: u(:, :)       !! (n_dim, torn nodes)
+    type(nodal_frames_t), intent(in) :: frames !! axes of the torn nodes
     integer, intent(in)     :: node_first(:) !! (n_patch+1)
     integer, intent(in)     :: k             !! local displacement
     real(dp), intent(in)    :: delta         !! [length]
-    integer :: patch, a, i
+    real(dp) :: local(size(u, 1))
+    integer :: patch, a
 
     a = (k - 1)/size(u, 1)
-    i = k - a*size(u, 1)
+    local = 0.0_dp
+    local(k - a*size(u, 1)) = delta
     do patch = 1, size(node_first) - 1
-      if (node_first(patch) + a < node_first(patch + 1)) then
-        u(i, node_first(patch) + a) = u(i, node_first(patch) + a) + delta
-      end if
+      associate (node => node_first(patch) + a)
+        if (node >= node_first(patch + 1)) cycle
+        u(:, node) = u(:, node) + in_global_axes(frames, node, local)
+      end associate
     end do
   end subroutine shift
 

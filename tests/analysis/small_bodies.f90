@@ -1,7 +1,7 @@
 !> Small bodies on distorted meshes with quadratic parents, and the set-up of one increment on them.
 module small_bodies
   use mpm_amplitude, only: amplitude_t, time_increment_t
-  use mpm_dof_map, only: constraint_t, number_dofs
+  use mpm_dof_map, only: constraint_t, number_dofs, turn_prescribed
   use mpm_error, only: error_t
   use mpm_kinds, only: dp
   use mpm_linear_solver, only: analyse
@@ -9,6 +9,7 @@ module small_bodies
   use mpm_material_points, only: generate_points
   use mpm_mesh, only: build_geometry, mesh_t
   use mpm_mesh_generator, only: box_settings_t, generate_box
+  use mpm_nodal_frames, only: nodal_frames_t
   use mpm_parent_mesh, only: parent_mesh_t
   use mpm_parent_split, only: split_parents
   use mpm_patches, only: patches_from_parents, patches_of_single_elements
@@ -17,7 +18,7 @@ module small_bodies
   use random_tensors, only: random_values
   implicit none
   private
-  public :: affine, elastic, fill, hold, make_body, move_mesh_along, on_boundary, plastic
+  public :: affine, elastic, fill, hold, incline, make_body, move_mesh_along, on_boundary, plastic
 
 contains
 
@@ -141,6 +142,24 @@ contains
                        system%active)
     call analyse(system%solver, system%tangent, k)
   end subroutine hold
+
+  !> Turns the body, and what holds it, by giving all nodes the turned axes.
+  subroutine incline(system, body, q)
+    type(system_t), intent(inout) :: system !! held as the body was before
+    type(body_t), intent(inout) :: body     !! turned about the origin
+    real(dp), intent(in) :: q(:, :)         !! (n_dim, n_dim)  rotation
+    type(nodal_frames_t) :: frames
+    integer :: i
+
+    body%mesh%x = matmul(q, body%mesh%x)
+    call build_geometry(body%mesh, i)
+    frames%of_node = [(1, i=1, body%mesh%n_node)]
+    frames%rotation = reshape(transpose(q), [size(q, 1), size(q, 1), 1])
+    call turn_prescribed(system%dofs, frames)
+    call build_pattern(system%tangent, system%map, body%patches, body%mesh, system%dofs, &
+                       system%active)
+    call analyse(system%solver, system%tangent, i)
+  end subroutine incline
 
   !> Moves all nodes of the mesh; points keep their hosts and shape functions.
   subroutine move_mesh_along(body, u)
