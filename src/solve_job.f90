@@ -1,7 +1,7 @@
 !> The analysis of a job: increments of equilibrium from the first step to the last.
 module mpm_solve_job
   use mpm_amplitude, only: time_increment_t
-  use mpm_dof_map, only: number_dofs
+  use mpm_dof_map, only: number_dofs, turn_prescribed
   use mpm_equilibrium, only: find_equilibrium, newton_report_t, outcome_converged, outcome_memory, &
     outcome_text
   use mpm_error, only: error_t, exit_lost_point, exit_model, exit_no_convergence, exit_solver, &
@@ -12,6 +12,7 @@ module mpm_solve_job
   use mpm_linear_solver, only: analyse, solver_memory, solver_ok
   use mpm_mesh_layout, only: lay_out_mesh
   use mpm_model, only: formulation_fbar, formulation_standard, model_t
+  use mpm_nodal_frames, only: part_along
   use mpm_patches, only: patches_of_single_elements
   use mpm_point_location, only: locate_points, location_report_t, locator_t, lost_is_error
   use mpm_point_update, only: accept_points
@@ -175,6 +176,7 @@ contains
       call find_active(system, body%points)
       call number_dofs(system%dofs, body%mesh, system%active, step%constraint, increment, &
                        model%amplitude)
+      call turn_prescribed(system%dofs, model%frames)
       call external_force(system%f_ext, step%load, body%mesh, body%points, increment, &
                           model%amplitude)
     end associate
@@ -276,7 +278,7 @@ contains
     type(model_t), intent(in)        :: model
 
     state%applied = system%f_ext
-    state%reaction = merge(system%f_int - system%f_ext, 0.0_dp, system%dofs%fixed)
+    state%reaction = part_along(model%frames, system%f_int - system%f_ext, system%dofs%fixed)
     state%delta_u = system%u
     state%node_u = state%node_u + system%u
     state%delta_j = 1.0_dp

@@ -2542,6 +2542,276 @@ job.inp:1:34: error: FORMAT of *MESH is 'STL': expected GMSH
         files={"square.msh": MSH_22},
     ),
     Case(
+        "transform_of_unknown_set",
+        PLANE,
+        [("*MATERIAL, NAME=CLAY\n", "*TRANSFORM, NSET=Y2\n0, 1, -1, 0\n*MATERIAL, NAME=CLAY\n")],
+        2,
+        text("""
+job.inp:8:18: error: node set 'Y2' is not defined: expected the name of a node set
+    8 | *TRANSFORM, NSET=Y2
+      |                  ^~ did you mean 'Y0'?
+"""),
+    ),
+    Case(
+        "transform_of_unknown_type",
+        PLANE,
+        [
+            (
+                "*MATERIAL, NAME=CLAY\n",
+                "*TRANSFORM, NSET=Y1, TYPE=Q\n0, 1, -1, 0\n*MATERIAL, NAME=CLAY\n",
+            )
+        ],
+        2,
+        text("""
+job.inp:8:27: error: TYPE of *TRANSFORM is 'Q': expected R, C or S
+    8 | *TRANSFORM, NSET=Y1, TYPE=Q
+      |                           ^
+"""),
+    ),
+    Case(
+        "transform_without_points",
+        PLANE,
+        [("*MATERIAL, NAME=CLAY\n", "*TRANSFORM, NSET=Y1\n*MATERIAL, NAME=CLAY\n")],
+        2,
+        text("""
+job.inp:8:1: error: missing data line of *TRANSFORM: expected xa, ya[, za[, xb[, yb[, zb]]]]
+    8 | *TRANSFORM, NSET=Y1
+      | ^~~~~~~~~~
+"""),
+    ),
+    Case(
+        "transform_with_two_lines",
+        PLANE,
+        [
+            (
+                "*MATERIAL, NAME=CLAY\n",
+                "*TRANSFORM, NSET=Y1\n0, 1, -1, 0\n0, 1, -1, 0\n*MATERIAL, NAME=CLAY\n",
+            )
+        ],
+        2,
+        text("""
+job.inp:10:1: error: too many data lines of *TRANSFORM: expected 1
+   10 | 0, 1, -1, 0
+      | ^~~~~~~~~~~
+"""),
+    ),
+    Case(
+        "transform_with_too_few_numbers",
+        PLANE,
+        [("*MATERIAL, NAME=CLAY\n", "*TRANSFORM, NSET=Y1\n0, 1, -1\n*MATERIAL, NAME=CLAY\n")],
+        2,
+        text("""
+job.inp:9:1: error: 3 numbers in a plane mesh: expected xa, ya, xb, yb
+    9 | 0, 1, -1
+      | ^~~~~~~~
+"""),
+    ),
+    Case(
+        "transform_in_space_with_four_numbers",
+        SOLID,
+        [("*MATERIAL, NAME=CLAY\n", "*TRANSFORM, NSET=Z1\n0, 1, -1, 0\n*MATERIAL, NAME=CLAY\n")],
+        2,
+        text("""
+job.inp:7:1: error: 4 numbers in a 3-D mesh: expected xa, ya, za, xb, yb, zb
+    7 | 0, 1, -1, 0
+      | ^~~~~~~~~~~
+"""),
+    ),
+    Case(
+        "plane_cylinder_with_four_numbers",
+        PLANE,
+        [
+            (
+                "*MATERIAL, NAME=CLAY\n",
+                "*TRANSFORM, NSET=Y1, TYPE=C\n0, 0, 1, 0\n*MATERIAL, NAME=CLAY\n",
+            )
+        ],
+        2,
+        text("""
+job.inp:9:1: error: 4 numbers in a plane mesh: expected xa, ya of the axis
+    9 | 0, 0, 1, 0
+      | ^~~~~~~~~~
+"""),
+    ),
+    Case(
+        "plane_transform_out_of_plane",
+        PLANE,
+        [
+            (
+                "*MATERIAL, NAME=CLAY\n",
+                "*TRANSFORM, NSET=Y1\n0, 1, 0, -1, 0, 2\n*MATERIAL, NAME=CLAY\n",
+            )
+        ],
+        2,
+        text("""
+job.inp:9:17: error: z = 2 in a plane mesh: expected 0
+    9 | 0, 1, 0, -1, 0, 2
+      |                 ^
+"""),
+    ),
+    Case(
+        "plane_cylinder_with_inclined_axis",
+        PLANE,
+        [
+            (
+                "*MATERIAL, NAME=CLAY\n",
+                "*TRANSFORM, NSET=Y1, TYPE=C\n0, 0, 0, 1, 0, 1\n*MATERIAL, NAME=CLAY\n",
+            )
+        ],
+        2,
+        text("""
+job.inp:9:10: error: the axis is not normal to the plane of the mesh: expected xb, yb equal to xa, ya, and zb another than za
+    9 | 0, 0, 0, 1, 0, 1
+      |          ^
+"""),
+    ),
+    Case(
+        "plane_transform_on_sphere",
+        PLANE,
+        [
+            (
+                "*MATERIAL, NAME=CLAY\n",
+                "*TRANSFORM, NSET=Y1, TYPE=S\n0, 0, 0, 0, 0, 1\n*MATERIAL, NAME=CLAY\n",
+            )
+        ],
+        2,
+        text("""
+job.inp:8:27: error: spherical axes in a plane mesh: expected TYPE=R or TYPE=C
+    8 | *TRANSFORM, NSET=Y1, TYPE=S
+      |                           ^
+"""),
+    ),
+    Case(
+        "transform_with_points_on_one_line",
+        PLANE,
+        [("*MATERIAL, NAME=CLAY\n", "*TRANSFORM, NSET=Y1\n1, 1, 2, 2\n*MATERIAL, NAME=CLAY\n")],
+        2,
+        text("""
+job.inp:9:1: error: a and b lie on one line through the origin: expected a on axis 1 and b beside it, in the plane of axes 1 and 2
+    9 | 1, 1, 2, 2
+      | ^~~~~~~~~~
+"""),
+    ),
+    Case(
+        "cylinder_without_axis",
+        SOLID,
+        [
+            (
+                "*MATERIAL, NAME=CLAY\n",
+                "*TRANSFORM, NSET=Z1, TYPE=C\n0, 0, 2, 0, 0, 2\n*MATERIAL, NAME=CLAY\n",
+            )
+        ],
+        2,
+        text("""
+job.inp:7:1: error: a and b are the same point: expected two points of the axis
+    7 | 0, 0, 2, 0, 0, 2
+      | ^~~~~~~~~~~~~~~~
+"""),
+    ),
+    Case(
+        "sphere_without_pole",
+        SOLID,
+        [
+            (
+                "*MATERIAL, NAME=CLAY\n",
+                "*TRANSFORM, NSET=Z1, TYPE=S\n3, 3, 3, 3, 3, 3\n*MATERIAL, NAME=CLAY\n",
+            )
+        ],
+        2,
+        text("""
+job.inp:7:1: error: a and b are the same point: expected the centre and a point of the polar axis
+    7 | 3, 3, 3, 3, 3, 3
+      | ^~~~~~~~~~~~~~~~
+"""),
+    ),
+    Case(
+        "node_on_axis_of_cylinder",
+        PLANE,
+        [("*MATERIAL, NAME=CLAY\n", "*TRANSFORM, NSET=Y1, TYPE=C\n1, 1\n*MATERIAL, NAME=CLAY\n")],
+        3,
+        text("""
+job.inp:8:18: error: node 9 lies on the axis, where radial and tangential have no direction: expected nodes beside it
+    8 | *TRANSFORM, NSET=Y1, TYPE=C
+      |                  ^~
+"""),
+    ),
+    Case(
+        "node_at_centre_of_sphere",
+        SOLID,
+        [
+            (
+                "*MATERIAL, NAME=CLAY\n",
+                "*TRANSFORM, NSET=Z1, TYPE=S\n1, 0, 1, 1, 0.5, 3\n*MATERIAL, NAME=CLAY\n",
+            )
+        ],
+        3,
+        text("""
+job.inp:6:18: error: node 6 lies on the axis, where radial and tangential have no direction: expected nodes beside it
+    6 | *TRANSFORM, NSET=Z1, TYPE=S
+      |                  ^~
+"""),
+    ),
+    Case(
+        "node_in_two_transforms",
+        PLANE,
+        [
+            (
+                "*MATERIAL, NAME=CLAY\n",
+                "*TRANSFORM, NSET=Y1\n0, 1, -1, 0\n*TRANSFORM, NSET=X0\n0, 1, -1, 0\n*MATERIAL, NAME=CLAY\n",
+            )
+        ],
+        2,
+        text("""
+job.inp:10:18: error: node 7 has axes by the *TRANSFORM of line 8 already: expected one *TRANSFORM for a node
+   10 | *TRANSFORM, NSET=X0
+      |                  ^~
+"""),
+    ),
+    Case(
+        "transform_in_a_step",
+        PLANE,
+        [("*BOUNDARY\n", "*TRANSFORM, NSET=Y1\n0, 1, -1, 0\n*BOUNDARY\n")],
+        2,
+        text("""
+job.inp:19:1: error: *TRANSFORM of the model: expected before the first *STEP
+   19 | *TRANSFORM, NSET=Y1
+      | ^~~~~~~~~~
+"""),
+    ),
+    Case(
+        "driver_with_other_axes",
+        PLANE,
+        [
+            (
+                "*MATERIAL, NAME=CLAY\n",
+                "*NSET, NSET=ONE\n8\n*TRANSFORM, NSET=ONE\n0, 1, -1, 0\n*MOVING MESH, DRIVER=Y1, DIRECTION=0,1, FIXED=Y0\n*MATERIAL, NAME=CLAY\n",
+            )
+        ],
+        3,
+        text("""
+job.inp:12:22: error: node 8 of the driver has other axes than the rest: expected one *TRANSFORM for the set, or none
+   12 | *MOVING MESH, DRIVER=Y1, DIRECTION=0,1, FIXED=Y0
+      |                      ^~
+"""),
+    ),
+    Case(
+        "roller_turned_away",
+        PLANE,
+        [
+            (
+                "*MATERIAL, NAME=CLAY\n",
+                "*NSET, NSET=MIDDLE\n4\n*TRANSFORM, NSET=MIDDLE\n0, 1, -1, 0\n*MATERIAL, NAME=CLAY\n",
+            ),
+            ("X0, 1, 1", "MIDDLE, 1, 1"),
+        ],
+        3,
+        text("""
+job.inp:20:1: error: the body of element 1 is free to move in this step (translation in x): expected *BOUNDARY conditions that hold it
+   20 | *STEP, NAME=PUSH, INC=20
+      | ^~~~~
+"""),
+    ),
+    Case(
         "no_convergence",
         PLANE,
         [

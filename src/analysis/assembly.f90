@@ -5,9 +5,8 @@ module mpm_assembly
   use mpm_kinds, only: dp, ip
   use mpm_kinematics, only: kinematics_t
   use mpm_mesh, only: mesh_t
-  use mpm_nodal_frames, only: rotate_block
   use mpm_patches, only: patches_t
-  use mpm_sparsity, only: assembly_map_t
+  use mpm_sparsity, only: assembly_map_t, turn_block
   use mpm_tensor, only: tensor_from_voigt
   implicit none
   private
@@ -58,8 +57,7 @@ contains
       !$omp do schedule(static)
       do i = map%color_first(color), map%color_first(color + 1) - 1
         call patch_tangent(block, map%color_patch(i), map, mesh, patches, kinematics, sums)
-        call rotate_block(block, map%frames, map%node(map%node_first(map%color_patch(i)): &
-                                                      map%node_first(map%color_patch(i) + 1) - 1))
+        call turn_block(block, map, map%color_patch(i))
         call scatter_block(tangent%val, map, map%color_patch(i), block)
       end do
       !$omp end do

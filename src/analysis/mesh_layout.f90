@@ -3,6 +3,7 @@ module mpm_mesh_layout
   use mpm_error, only: error_t, exit_model, make_error
   use mpm_kinds, only: dp
   use mpm_mesh_motion, only: carry_mesh, is_along, mesh_motion_t, move_mesh
+  use mpm_nodal_frames, only: in_local_axes
   use mpm_system, only: body_t, system_t
   use mpm_text, only: integer_text
   implicit none
@@ -52,12 +53,14 @@ contains
     type(system_t), intent(in)      :: system        !! converged
     type(mesh_motion_t), intent(in) :: motion        !! driver and direction
     type(error_t), allocatable, intent(out) :: error !! no driver node touches the body
+    real(dp), allocatable :: normal(:)
     integer, allocatable :: node(:)
     integer :: n_dim
 
     n_dim = size(system%u, 1)
     associate (direction => motion%direction(:n_dim), first => motion%driver(1))
-      if (all(system%dofs%fixed(:, first) .or. .not. is_along(direction))) then
+      normal = in_local_axes(system%dofs%frames, first, direction)
+      if (all(system%dofs%fixed(:, first) .or. .not. is_along(normal))) then
         displacement = dot_product(direction, system%dofs%prescribed(:, first))
         return
       end if

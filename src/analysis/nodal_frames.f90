@@ -75,20 +75,20 @@ contains
   end subroutine axes_at
 
   !> A vector of length 1.
-  pure function unit(vector)
+  pure function unit(vector) result(direction)
     real(dp), intent(in) :: vector(3) !! (3)  not zero
-    real(dp) :: unit(3)               !! (3)
+    real(dp) :: direction(3)          !! (3)
 
-    unit = vector/norm2(vector)
+    direction = vector/norm2(vector)
   end function unit
 
   !> Whether a node has axes of its own.
-  pure logical function has_frame(frames, node)
+  pure logical function has_frame(frames, node) result(has)
     type(nodal_frames_t), intent(in) :: frames
     integer, intent(in) :: node !! a node
 
-    has_frame = .false.
-    if (allocated(frames%of_node)) has_frame = frames%of_node(node) > 0
+    has = .false.
+    if (allocated(frames%of_node)) has = frames%of_node(node) > 0
   end function has_frame
 
   !> Axes of some nodes, own or global. Precondition: some nodes have their own.

@@ -7,11 +7,11 @@ module mpm_sparsity
   use mpm_dof_map, only: dof_map_t
   use mpm_kinds, only: dp, ip
   use mpm_mesh, only: mesh_t
-  use mpm_nodal_frames, only: nodal_frames_t
+  use mpm_nodal_frames, only: nodal_frames_t, rotate_block
   use mpm_patches, only: patches_t
   implicit none
   private
-  public :: assembly_map_t, build_pattern, pattern_is_current
+  public :: assembly_map_t, build_pattern, pattern_is_current, turn_block
 
   !> How the blocks of patches enter the tangent. Local equation (a-1)*n_dim + i of a patch is
   !! component i of its node a. Patches of a colour share no node, so they may be assembled at
@@ -80,6 +80,16 @@ contains
     if (any(shape(map%fixed) /= shape(dofs%fixed))) return
     is_current = all(map%active_element .eqv. active_element) .and. all(map%fixed .eqv. dofs%fixed)
   end function pattern_is_current
+
+  !> Turns the block of a patch into the axes of its nodes. Source: theory.md (19e).
+  pure subroutine turn_block(block, map, patch)
+    real(dp), intent(inout) :: block(:, :)       !! (n_eq, n_eq)  along the global axes
+    type(assembly_map_t), intent(in) :: map
+    integer, intent(in) :: patch
+
+    call rotate_block(block, map%frames, &
+                      map%node(map%node_first(patch):map%node_first(patch + 1) - 1))
+  end subroutine turn_block
 
   !> Lists the nodes of each patch in the order in which its active elements name them.
   pure subroutine collect_nodes(map, patches, mesh)

@@ -23,6 +23,7 @@ contains
     call add_material(schema)
     call add_plastic(schema)
     call add_amplitude(schema)
+    call add_transform(schema)
   end subroutine add_model_keywords
 
   !> *FORMULATION and *PATCH.
@@ -135,5 +136,26 @@ contains
     call add_field(schema, value_rule_t("time", value_real, range=">= 0", meaning="step time"))
     call add_field(schema, value_rule_t("factor", value_real, meaning="factor at that time"))
   end subroutine add_amplitude
+
+  !> *TRANSFORM.
+  pure subroutine add_transform(schema)
+    type(schema_t), intent(inout) :: schema !! gets the keyword
+
+    call add_keyword(schema, "TRANSFORM", "tables", in_model, once_never, &
+                     "Gives nodes axes of their own; *BOUNDARY and *CLOAD on them mean these.")
+    call add_parameter(schema, value_rule_t("NSET", value_name, meaning="nodes"))
+    call add_parameter(schema, value_rule_t("TYPE", value_choice, required=.false., &
+                                            choices="R|C|S", default="R", &
+                                            meaning="rectangular, cylindrical or spherical"))
+    call add_layout(schema, 1, 1, layout_t())
+    call add_field(schema, value_rule_t("xa", value_real, meaning="point a"))
+    call add_field(schema, value_rule_t("ya", value_real, meaning="point a"))
+    call add_field(schema, value_rule_t("za", value_real, required=.false., &
+                                        meaning="point a; in a plane mesh it may be left out"))
+    call add_field(schema, value_rule_t("xb", value_real, required=.false., meaning="point b"))
+    call add_field(schema, value_rule_t("yb", value_real, required=.false., meaning="point b"))
+    call add_field(schema, value_rule_t("zb", value_real, required=.false., &
+                                        meaning="point b; in a plane mesh it may be left out"))
+  end subroutine add_transform
 
 end module mpm_deck_schema_model

@@ -6,6 +6,7 @@ module mpm_driver_check
   use mpm_kinds, only: dp
   use mpm_mesh_motion, only: is_along
   use mpm_model, only: model_t, step_t
+  use mpm_nodal_frames, only: in_local_axes
   use mpm_text, only: integer_text
   implicit none
   private
@@ -28,6 +29,8 @@ contains
     end do
     do i = 1, size(model%step)
       if (is_driver_prescribed(model, i)) then
+        call check_axes(model, deck, context, card)
+        if (context%diag%n_errors > 0) return
         call check_values(model, deck, context, i, card)
       else if (.not. touches_body(model)) then
         call fault(context, deck, at_parameter(card, "DRIVER"), "the driver has no prescribed " &
@@ -42,19 +45,31 @@ contains
   pure logical function is_driver_prescribed(model, i_step) result(prescribed)
     type(model_t), intent(in) :: model !! with steps and motion
     integer, intent(in) :: i_step      !! step
+    real(dp) :: normal(model%mesh%n_dim)
     integer :: a, i
 
     prescribed = .false.
     if (.not. allocated(model%step(i_step)%constraint)) return
     do i = 1, size(model%step(i_step)%constraint)
       associate (constraint => model%step(i_step)%constraint(i))
-        if (.not. is_along(model%motion%direction(constraint%direction))) cycle
         do a = 1, size(model%motion%driver)
-          prescribed = prescribed .or. any(constraint%node == model%motion%driver(a))
+          if (all(constraint%node /= model%motion%driver(a))) cycle
+          normal = driver_normal(model, a)
+          prescribed = prescribed .or. is_along(normal(constraint%direction))
         end do
       end associate
     end do
   end function is_driver_prescribed
+
+  !> Direction of the motion along the axes of a node of the driver. Source: theory.md (19).
+  pure function driver_normal(model, i) result(normal)
+    type(model_t), intent(in) :: model      !! with motion
+    integer, intent(in) :: i                !! index of the node in the driver
+    real(dp) :: normal(model%mesh%n_dim)    !! unit vector
+
+    normal = in_local_axes(model%frames, model%motion%driver(i), &
+                           model%motion%direction(:model%mesh%n_dim))
+  end function driver_normal
 
   !> Whether a driver node belongs to an element with material points.
   pure logical function touches_body(model) result(touches)
@@ -69,6 +84,26 @@ contains
     touches = any(filled(model%motion%driver))
   end function touches_body
 
+  !> All driver nodes see the direction of the motion along the same components.
+  subroutine check_axes(model, deck, context, card)
+    type(model_t), intent(in) :: model              !! complete
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes the error
+    integer, intent(in) :: card                     !! *MOVING MESH
+    real(dp) :: normal(model%mesh%n_dim)
+    integer :: j
+
+    normal = driver_normal(model, 1)
+    do j = 2, size(model%motion%driver)
+      if (.not. any(is_along(driver_normal(model, j) - normal))) cycle
+      call fault(context, deck, at_parameter(card, "DRIVER"), "node " &
+        & //integer_text(model%mesh%node_label(model%motion%driver(j)))//" of the driver has " &
+        & //"other axes than the rest: expected one *TRANSFORM for the set, or none", &
+        & code=exit_model)
+      return
+    end do
+  end subroutine check_axes
+
   !> All driver nodes have the same prescribed displacement in a step; the first other one is told.
   subroutine check_values(model, deck, context, i_step, card)
     type(model_t), intent(in) :: model              !! complete
@@ -76,11 +111,13 @@ contains
     type(build_context_t), intent(inout) :: context !! takes the error
     integer, intent(in) :: i_step                   !! step
     integer, intent(in) :: card                     !! *MOVING MESH
+    real(dp) :: normal(model%mesh%n_dim)
     integer :: d, j
 
+    normal = driver_normal(model, 1)
     associate (motion => model%motion, step => model%step(i_step))
       do d = 1, model%mesh%n_dim
-        if (.not. is_along(motion%direction(d))) cycle
+        if (.not. is_along(normal(d))) cycle
         do j = 1, size(motion%driver)
           if (is_driven(step, motion%driver(j), motion%driver(1), d)) cycle
           call fault(context, deck, at_parameter(card, "DRIVER"), "node " &

@@ -9,6 +9,7 @@ module mpm_load_builder
   use mpm_external_force, only: load_gravity, load_nodal, load_pressure, load_t, load_traction
   use mpm_kinds, only: dp
   use mpm_model, only: model_t
+  use mpm_nodal_frames, only: node_axes
   use mpm_text, only: integer_text, real_text, to_upper
   implicit none
   private
@@ -121,6 +122,9 @@ contains
         return
       end if
       new%load%value(direction) = field_real(line, 3)
+      if (allocated(model%frames%of_node)) then
+        new%load%axes = node_axes(model%frames, new%load%item)
+      end if
       new%key = "CLOAD "//integer_text(direction)//" "//to_upper(field_text(line, 1))
     end associate
   end subroutine build_nodal

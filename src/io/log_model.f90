@@ -27,6 +27,7 @@ contains
            //"  patches: source "//model%patch_source
     if (model%patch_source == "METIS") text = text//", size "//integer_text(model%patch_size)
     text = text//line_end//"  mesh: "//motion_text(model%motion)
+    text = text//line_end//"  axes of nodes: "//axes_text(model)
     text = text//line_end//"  lost points: "//lost_action_text(model%location%lost_action) &
            //", tolerance "//real_text(model%location%tolerance)//line_end
     if (model%locking_meter) text = text//"  locking meter: the continuum has " &
@@ -53,6 +54,16 @@ contains
              //integer_text(size(motion%fixed))//" nodes, direction"//reals_text(motion%direction)
     end if
   end function motion_text
+
+  !> How many nodes have axes of their own.
+  pure function axes_text(model) result(text)
+    type(model_t), intent(in) :: model
+    character(:), allocatable :: text
+
+    text = "global"
+    if (allocated(model%frames%of_node)) text = integer_text(count(model%frames%of_node > 0)) &
+      & //" nodes rotated, the rest global"
+  end function axes_text
 
   !> One material.
   pure function material_text(material) result(text)

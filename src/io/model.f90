@@ -10,6 +10,7 @@ module mpm_model
   use mpm_material_points, only: points_t
   use mpm_mesh, only: mesh_t
   use mpm_mesh_motion, only: mesh_motion_t
+  use mpm_nodal_frames, only: nodal_frames_t
   use mpm_patches, only: patches_t
   use mpm_point_location, only: location_settings_t
   implicit none
@@ -85,6 +86,7 @@ module mpm_model
     type(material_t), allocatable  :: material(:)
     type(points_t)            :: points
     type(mesh_motion_t)       :: motion
+    type(nodal_frames_t)      :: frames       !! axes of the nodes
     type(location_settings_t) :: location
     logical                   :: locking_meter = .false. !! lines of the meter in the log
     type(amplitude_t), allocatable :: amplitude(:)

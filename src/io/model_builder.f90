@@ -5,6 +5,7 @@ module mpm_model_builder
   use mpm_diagnostics, only: diagnostics_t, to_error
   use mpm_driver_check, only: check_driver
   use mpm_error, only: error_t, exit_model
+  use mpm_frame_builder, only: build_frames
   use mpm_labelled_mesh, only: labelled_mesh_t
   use mpm_material_builder, only: build_amplitudes, build_materials
   use mpm_mesh_builder, only: build_linear_mesh, build_parents
@@ -40,6 +41,7 @@ contains
     if (model%mesh%n_el > 0) then
       call build_method(model, deck, context, mesh%parent%order)
       call build_points(model, deck, context)
+      call build_frames(model%frames, model%mesh, deck, context)
       call build_steps(model, deck, context)
       if (context%diag%n_errors == 0) call report_unused(context, deck)
       if (context%diag%n_errors == 0) call check_supports(model, deck, context)
@@ -99,7 +101,8 @@ contains
     integer :: i, element
 
     do i = 1, size(model%step)
-      call find_free_modes(modes, element, model%mesh, model%points, model%step(i)%constraint)
+      call find_free_modes(modes, element, model%mesh, model%points, model%step(i)%constraint, &
+                           model%frames)
       if (element == 0) cycle
       call fault(context, deck, at_card(model%step(i)%card), "the body of element " &
                  //integer_text(model%mesh%parent_label(model%mesh%parent(element))) &

@@ -4,6 +4,7 @@ module mpm_status_file
   use mpm_error, only: error_t
   use mpm_kinds, only: dp
   use mpm_model, only: model_t
+  use mpm_nodal_frames, only: in_local_axes, nodal_frames_t
   use mpm_run_state, only: end_of_run, estimated_time_left, run_state_t
   use mpm_text_file, only: open_text_file, text_file_t, write_line
   implicit none
@@ -14,7 +15,8 @@ module mpm_status_file
   type :: status_file_t
     type(text_file_t) :: file
     integer, allocatable :: driver(:)      !! nodes of the driver set, perhaps none
-    real(dp) :: direction(3) = 0.0_dp      !! unit vector of their reaction
+    real(dp) :: direction(3) = 0.0_dp      !! unit vector of their reaction, along their axes
+    type(nodal_frames_t) :: frames         !! axes of the nodes
     real(dp) :: end_time = 0.0_dp          !! total time at the end of the run
   end type status_file_t
 
@@ -47,6 +49,7 @@ contains
       status%direction = model%motion%direction
       return
     end if
+    status%frames = model%frames
     do i = 1, size(model%step)
       if (.not. allocated(model%step(i)%constraint)) cycle
       do j = 1, size(model%step(i)%constraint)
@@ -78,10 +81,15 @@ contains
     type(status_file_t), intent(in) :: status !! driver set
     type(run_state_t), intent(in) :: state    !! reactions
     real(dp) :: reaction
-    integer :: n_dim
+    real(dp) :: total(size(state%reaction, 1))
+    integer :: i
 
-    n_dim = size(state%reaction, 1)
-    reaction = dot_product(status%direction(:n_dim), sum(state%reaction(:, status%driver), 2))
+    total = 0.0_dp
+    do i = 1, size(status%driver)
+      total = total + in_local_axes(status%frames, status%driver(i), &
+                                    state%reaction(:, status%driver(i)))
+    end do
+    reaction = dot_product(status%direction(:size(total)), total)
   end function driver_reaction
 
   !> Writes the line of an attempt.

@@ -4,6 +4,8 @@ module mpm_support_check
   use mpm_kinds, only: dp
   use mpm_material_points, only: points_t
   use mpm_mesh, only: mesh_t
+  use mpm_nodal_frames, only: in_global_axes, nodal_frames_t
+  use mpm_tensor, only: cross_product
   implicit none
   private
   public :: find_free_modes
@@ -14,12 +16,13 @@ contains
 
   !> Finds the first body that the constraints do not hold: elements with points that hang together
   !! by nodes. Its free modes are named in words.
-  pure subroutine find_free_modes(modes, element, mesh, points, constraint)
+  pure subroutine find_free_modes(modes, element, mesh, points, constraint, frames)
     character(:), allocatable, intent(out) :: modes  !! "translation in y", empty if all is held
     integer, intent(out) :: element                  !! an element of that body, 0 if all is held
     type(mesh_t), intent(in) :: mesh                 !! initial mesh
     type(points_t), intent(in) :: points             !! initial points
     type(constraint_t), intent(in) :: constraint(:)  !! in force in the step
+    type(nodal_frames_t), intent(in) :: frames       !! axes of the nodes
     integer, allocatable :: body(:)
     logical, allocatable :: fixed(:, :), seen(:)
     integer :: i, e
@@ -36,7 +39,7 @@ contains
       if (points%first(e + 1) == points%first(e)) cycle
       if (seen(body(mesh%node(1, e)))) cycle
       seen(body(mesh%node(1, e))) = .true.
-      modes = free_modes(mesh, fixed, body == body(mesh%node(1, e)))
+      modes = free_modes(mesh, fixed, frames, body == body(mesh%node(1, e)))
       if (len(modes) == 0) cycle
       element = e
       return
@@ -95,9 +98,10 @@ contains
   end function root
 
   !> Names of the rigid-body modes of a body that no constraint resists.
-  pure function free_modes(mesh, fixed, member) result(modes)
+  pure function free_modes(mesh, fixed, frames, member) result(modes)
     type(mesh_t), intent(in) :: mesh   !! initial mesh
     logical, intent(in) :: fixed(:, :) !! (n_dim, n_node) prescribed
+    type(nodal_frames_t), intent(in) :: frames !! axes of the nodes
     logical, intent(in) :: member(:)   !! (n_node) belongs to the body
     character(:), allocatable :: modes !! separated by commas, empty if none is free
     character(16), parameter :: name(6) = ["translation in x", "translation in y", &
@@ -106,7 +110,7 @@ contains
     integer :: i, n_rank
 
     modes = ""
-    gram = held_modes(mesh, fixed, member)
+    gram = held_modes(mesh, fixed, frames, member)
     if (mesh%n_dim == 2) then
       do i = 3, 5
         gram(i, i) = 1.0_dp
@@ -128,12 +132,14 @@ contains
 
   !> Sum over the prescribed degrees of freedom of r r^T, with r the displacement of that degree of
   !! freedom in the six rigid modes (rotations about the middle of the body, scaled by its size).
-  pure function held_modes(mesh, fixed, member) result(gram)
+  pure function held_modes(mesh, fixed, frames, member) result(gram)
     type(mesh_t), intent(in) :: mesh   !! initial mesh
     logical, intent(in) :: fixed(:, :) !! (n_dim, n_node) prescribed
+    type(nodal_frames_t), intent(in) :: frames !! axes of the nodes
     logical, intent(in) :: member(:)   !! (n_node) belongs to the body
     real(dp) :: gram(6, 6)             !! (6, 6) translations, then rotations; largest entry 1
     real(dp) :: low(3), high(3), x(3), r(6), extent
+    real(dp) :: direction(3), axis(mesh%n_dim)
     integer :: a, i
 
     low = 0.0_dp
@@ -151,30 +157,17 @@ contains
       x = (x - 0.5_dp*(low + high))/extent
       do i = 1, mesh%n_dim
         if (.not. fixed(i, a)) cycle
-        r = 0.0_dp
-        r(i) = 1.0_dp
-        r(4:6) = rotation_row(x, i)
+        axis = 0.0_dp
+        axis(i) = 1.0_dp
+        direction = 0.0_dp
+        direction(:mesh%n_dim) = in_global_axes(frames, a, axis)
+        r(1:3) = direction
+        r(4:6) = cross_product(x, direction)
         gram = gram + spread(r, 2, 6)*spread(r, 1, 6)
       end do
     end do
     if (maxval(abs(gram)) > 0.0_dp) gram = gram/maxval(abs(gram))
   end function held_modes
-
-  !> Displacement in direction i at x for unit rotations about x, y and z.
-  pure function rotation_row(x, i) result(row)
-    real(dp), intent(in) :: x(3) !! (3) position
-    integer, intent(in) :: i     !! direction
-    real(dp) :: row(3)           !! (3)
-
-    select case (i)
-    case (1)
-      row = [0.0_dp, x(3), -x(2)]
-    case (2)
-      row = [-x(3), 0.0_dp, x(1)]
-    case default
-      row = [x(2), -x(1), 0.0_dp]
-    end select
-  end function rotation_row
 
   !> Rank of a positive semidefinite matrix by elimination with the largest diagonal as pivot.
   pure integer function rank_of(matrix) result(n_rank)
