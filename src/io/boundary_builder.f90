@@ -3,8 +3,8 @@ module mpm_boundary_builder
   use mpm_amplitude, only: amplitude_t, amplitude_value
   use mpm_build_context, only: at_field, at_parameter, build_context_t, fault, &
     & is_amplitude, name_hint, place_t, require_node_set, use_name
-  use mpm_deck_card, only: deck_t, field_count, field_integer, field_is_integer, field_real, &
-    & field_text, has_parameter, parameter_choice, parameter_text
+  use mpm_deck_card, only: deck_card_t, deck_t, field_count, field_integer, field_is_integer, &
+    & field_real, field_text, has_parameter, parameter_choice, parameter_text
   use mpm_diagnostics, only: quoted
   use mpm_dof_map, only: constraint_t
   use mpm_error, only: exit_model
@@ -291,7 +291,8 @@ contains
                //" is not defined: expected the NAME of an *AMPLITUDE", name_hint(name, names))
   end subroutine find_amplitude
 
-  !> The nodes that a field names: a node set or one node. At least one must hold material.
+  !> The nodes that a field names: a node set or one node. At least one must hold material; a node
+  !! of *BOUNDARY may also lie off the body in a list of numbers that touches it.
   subroutine nodes_of_field(node, state, mesh, deck, context, place)
     integer, allocatable, intent(out) :: node(:)    !! (n) nodes, empty after an error
     type(boundary_state_t), intent(in) :: state     !! labels, filled nodes
@@ -316,10 +317,31 @@ contains
     end associate
     if (.not. allocated(node)) then
       allocate (node(0))
-    else if (.not. any(state%filled(node)) .and. any(state%filled)) then
+    else if (any(state%filled(node)) .or. .not. any(state%filled)) then
+      return
+    else if (.not. is_in_list_of_body(state, deck%card(place%card), place)) then
       call fault(context, deck, place, quoted(name)//" touches no element with material points: " &
                  //"expected nodes of the body", code=exit_model)
     end if
   end subroutine nodes_of_field
+
+  !> Whether a field of *BOUNDARY is the number of a node and another number in the same field of
+  !! that card is a node of the body: a background that is prescribed node by node.
+  pure logical function is_in_list_of_body(state, card, place) result(in_list)
+    type(boundary_state_t), intent(in) :: state !! labels, filled nodes
+    type(deck_card_t), intent(in) :: card            !! card of the field
+    type(place_t), intent(in) :: place          !! the field
+    integer :: i, node
+
+    in_list = .false.
+    if (card%keyword /= "BOUNDARY") return
+    if (.not. field_is_integer(card%data(place%line), place%field)) return
+    do i = 1, size(card%data)
+      if (.not. field_is_integer(card%data(i), place%field)) cycle
+      node = find_label(state%label, field_integer(card%data(i), place%field))
+      if (node > 0) in_list = state%filled(node)
+      if (in_list) return
+    end do
+  end function is_in_list_of_body
 
 end module mpm_boundary_builder
