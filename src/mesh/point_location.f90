@@ -8,7 +8,7 @@ module mpm_point_location
   use mpm_simplex, only: distance_to_simplex, simplex_shape, simplex_size
   implicit none
   private
-  public :: locate_points, locator_t
+  public :: is_inside, locate_points, locator_t, search_bins, walk
   public :: location_settings_t, location_report_t
   public :: lost_is_error, lost_is_frozen, lost_is_removed
 
@@ -87,8 +87,9 @@ contains
     type(location_report_t), intent(inout)   :: report   !! counts
 
     real(dp) :: shape(mesh%n_dim + 1)
+    logical, allocatable :: eligible(:)
     integer, allocatable :: stray(:)
-    integer :: i, n_bin_tests, n_tests, p, status
+    integer :: i, n_bin_tests, n_tests, p
 
     stray = pack([(p, p=1, points%n)], host == 0 .and. points%status /= status_frozen &
       .and. points%status /= status_removed)
@@ -97,16 +98,16 @@ contains
     if (.not. is_current(locator%bins, mesh, settings%tolerance)) then
       call build_bins(locator%bins, mesh, settings%tolerance)
     end if
+    allocate (eligible(mesh%n_el), source=.true.)
     n_bin_tests = 0
-    !$omp parallel do default(shared) private(i, p, shape, n_tests, status) &
-    !$omp reduction(+:n_bin_tests)
+    !$omp parallel do default(shared) private(i, p, shape, n_tests) reduction(+:n_bin_tests)
     do i = 1, size(stray)
       p = stray(i)
-      call search_bins(locator%bins, mesh, points%x(:, p), host(p), shape, status, n_tests)
+      call search_bins(locator%bins, mesh, eligible, points%x(:, p), host(p), shape, n_tests)
       n_bin_tests = n_bin_tests + n_tests
       if (host(p) == 0) cycle
       points%shape(:, p) = shape
-      points%status(p) = status
+      points%status(p) = merge(status_inside, status_extrapolated, is_inside(shape))
     end do
     !$omp end parallel do
     report%n_bin_tests = n_bin_tests
@@ -164,7 +165,7 @@ contains
       n_steps = n_steps + 1
       visited(n_steps) = element
       shape = simplex_shape(mesh%x(:, mesh%node(1, element)), mesh%grad_shape(:, :, element), x)
-      if (all(shape >= -inside_tolerance)) return
+      if (is_inside(shape)) return
       if (.not. at_random) at_random = any(visited(:n_steps - 1) == element)
       face = minloc(shape, dim=1)
       if (at_random) call choose_negative(shape, random, face)
@@ -187,15 +188,22 @@ contains
     face = negative(int(mod(random/65536_ip, int(size(negative), ip))) + 1)
   end subroutine choose_negative
 
-  !> Tests the elements of the bin that holds a position: the first element that contains it, else
-  !! the nearest of those that are nearer than the reach of the bins times their own size.
-  pure subroutine search_bins(bins, mesh, x, element, shape, status, n_tests)
+  !> Whether shape functions are those of a position inside their element.
+  pure logical function is_inside(shape) result(inside)
+    real(dp), intent(in) :: shape(:) !! (n_dim+1)  shape functions [-]
+
+    inside = all(shape >= -inside_tolerance)
+  end function is_inside
+
+  !> Tests the eligible elements of the bin that holds a position: the first one that contains it,
+  !! else the nearest of those that are nearer than the reach of the bins times their own size.
+  pure subroutine search_bins(bins, mesh, eligible, x, element, shape, n_tests)
     type(element_bins_t), intent(in) :: bins !! bins of this mesh
     type(mesh_t), intent(in) :: mesh         !! mesh
+    logical, intent(in)      :: eligible(:)  !! (n_el)     may be the host
     real(dp), intent(in)     :: x(:)         !! (n_dim)    position [length]
-    integer, intent(out)     :: element      !!            host, 0 if the point is lost
+    integer, intent(out)     :: element      !!            host, 0 if there is none
     real(dp), intent(out)    :: shape(:)     !! (n_dim+1)  shape functions of the host [-]
-    integer, intent(out)     :: status       !!            status_inside or status_extrapolated
     integer, intent(out)     :: n_tests      !!            elements tested
 
     real(dp) :: distance, least
@@ -203,7 +211,6 @@ contains
 
     element = 0
     n_tests = 0
-    status = status_inside
     shape = 0.0_dp
     least = huge(1.0_dp)
     bin = bin_of(bins, x)
@@ -211,11 +218,11 @@ contains
     do i = bins%first(bin), bins%first(bin + 1) - 1
       e = bins%element(i)
       n_tests = n_tests + 1
+      if (.not. eligible(e)) cycle
       if (any(x < bins%box(:, 1, e)) .or. any(x > bins%box(:, 2, e))) cycle
       shape = simplex_shape(mesh%x(:, mesh%node(1, e)), mesh%grad_shape(:, :, e), x)
-      if (all(shape >= -inside_tolerance)) then
+      if (is_inside(shape)) then
         element = e
-        status = status_inside
         return
       end if
       distance = distance_to_simplex(x, mesh%x(:, mesh%node(:, e)))
@@ -224,7 +231,6 @@ contains
       element = e
     end do
     if (element == 0) return
-    status = status_extrapolated
     shape = simplex_shape(mesh%x(:, mesh%node(1, element)), mesh%grad_shape(:, :, element), x)
   end subroutine search_bins
 
