@@ -6,7 +6,7 @@ module mpm_solve_job
     outcome_text
   use mpm_error, only: error_t, exit_lost_point, exit_model, exit_no_convergence, exit_solver, &
     make_error
-  use mpm_external_force, only: external_force, loaded_inactive_node, prepare_loads
+  use mpm_external_force, only: check_applied, external_force, prepare_loads
   use mpm_increments, only: accept_step, begin_step, cut_back, schedule_t, start_increment
   use mpm_kinds, only: dp, ip
   use mpm_linear_solver, only: analyse, solver_memory, solver_ok
@@ -19,6 +19,7 @@ module mpm_solve_job
   use mpm_run_output, only: run_output_t, write_attempt, write_increment, write_last_state
   use mpm_run_state, only: make_run_state, note_locking, run_state_t
   use mpm_sparsity, only: build_pattern, pattern_is_current
+  use mpm_surface_points, only: locate_surface_points
   use mpm_system, only: body_t, find_active, free_system, open_system, system_t
   use mpm_text, only: integer_text, real_text
   implicit none
@@ -112,6 +113,8 @@ contains
         call lay_out_mesh(body, system, model%motion, error)
         if (allocated(error)) return
         call locate_points(body%points, body%mesh, analysis%locator, model%location, location)
+        call find_active(system, body%points)
+        call locate_surface_points(body%surface, body%mesh, system%active)
         call note_location(state, schedule, location)
         if (output%metered) call note_locking(state, body, system)
         call write_increment(output, model, body%mesh, body%points, state, error)
@@ -133,6 +136,7 @@ contains
 
     body%mesh = model%mesh
     body%points = model%points
+    body%surface = model%surface
     body%material = model%material
     select case (model%formulation)
     case (formulation_fbar)
@@ -169,7 +173,7 @@ contains
     type(schedule_t), intent(in)  :: schedule
     type(error_t), allocatable, intent(out) :: error
     type(time_increment_t) :: increment
-    integer :: outcome, node
+    integer :: outcome
 
     increment = time_increment_t(schedule%step_time, schedule%size, schedule%settings%period)
     associate (step => model%step(schedule%step))
@@ -177,16 +181,11 @@ contains
       call number_dofs(system%dofs, body%mesh, system%active, step%constraint, increment, &
                        model%amplitude)
       call turn_prescribed(system%dofs, model%frames)
-      call external_force(system%f_ext, step%load, body%mesh, body%points, increment, &
-                          model%amplitude)
+      call external_force(system%f_ext, step%load, body%mesh, body%points, body%surface, &
+                          increment, model%amplitude)
+      call check_applied(error, system%f_ext, step%load, system%dofs, body%mesh, body%surface)
     end associate
-    node = loaded_inactive_node(system%f_ext, system%dofs)
-    if (node > 0) then
-      call make_error(error, exit_model, "error: node "//integer_text(body%mesh%node_label(node))// &
-                      " carries a load but belongs to no element that holds material points: "// &
-                      "expected loads on the body only")
-      return
-    end if
+    if (allocated(error)) return
     if (pattern_is_current(system%map, system%active, system%dofs)) return
     call build_pattern(system%tangent, system%map, body%patches, body%mesh, system%dofs, &
                        system%active)

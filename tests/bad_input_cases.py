@@ -1452,6 +1452,45 @@ job.inp:26:1: error: '9' touches no element with material points: expected nodes
 """),
     ),
     Case(
+        "traction_on_empty_elements",
+        PLANE,
+        [
+            ("*FORMULATION, TYPE", "*ELSET, ELSET=PART\n1\n*FORMULATION, TYPE"),
+            ("ELSET=ALL", "ELSET=PART"),
+            ("Y1, 2, 2, -0.001\n", "*DSLOAD\nX1, P, 1.0\n"),
+            ("NSET=Y1", "NSET=Y0"),
+            ("SET=Y1", "SET=Y0"),
+        ],
+        3,
+        text("""
+job.inp:25:1: error: no material points at a face of element 4 in surface 'X1': expected faces of the body
+   25 | X1, P, 1.0
+      | ^~
+"""),
+    ),
+    Case(
+        "carrier_unknown",
+        PLANE,
+        [("*HISTORY", "*DSLOAD, CARRIER=BODY\nX1, P, 1\n*HISTORY")],
+        2,
+        text("""
+job.inp:23:18: error: CARRIER of *DSLOAD is 'BODY': expected MESH or POINTS
+   23 | *DSLOAD, CARRIER=BODY
+      |                  ^~~~
+"""),
+    ),
+    Case(
+        "two_carriers_at_a_time",
+        PLANE,
+        [("*HISTORY", "*DSLOAD\nX1, P, 1\n*DSLOAD, CARRIER=POINTS\nX1, P, 2\n*HISTORY")],
+        2,
+        text("""
+job.inp:26:1: error: this surface is loaded through the other CARRIER in line 24: expected the same one, or OP=NEW
+   26 | X1, P, 2
+      | ^~
+"""),
+    ),
+    Case(
         "moving_mesh_with_zero_direction",
         PLANE,
         [("*MATERIAL, NAME", "*MOVING MESH, DRIVER=Y1, DIRECTION=0,0, FIXED=Y0\n*MATERIAL, NAME")],

@@ -2,13 +2,16 @@
 module mpm_external_force
   use mpm_amplitude, only: amplitude_t, step_fraction, time_increment_t
   use mpm_dof_map, only: dof_map_t
+  use mpm_error, only: error_t, exit_lost_point, exit_model, make_error
   use mpm_kinds, only: dp
   use mpm_material_points, only: points_t
   use mpm_mesh, only: face_nodes, mesh_t
+  use mpm_surface_points, only: surface_of_point, surface_points_t
+  use mpm_text, only: integer_text, real_text
   implicit none
   private
   public :: load_t, load_gravity, load_pressure, load_traction, load_nodal
-  public :: external_force, loaded_inactive_node, load_value, prepare_loads
+  public :: check_applied, external_force, loaded_inactive_node, load_value, prepare_loads
 
   integer, parameter :: load_gravity = 1  !! *DLOAD GRAV: acceleration on the mass of points
   integer, parameter :: load_pressure = 2 !! *DSLOAD P: dead pressure, positive towards the body
@@ -22,6 +25,8 @@ module mpm_external_force
     integer, allocatable :: item(:)      !! gravity: elements of the initial mesh whose points
                                          !! are loaded; nodal: nodes; surface: elements
     integer, allocatable :: face(:)      !! surface: local face of each element
+    integer  :: surface = 0              !! surface of the mesh whose points carry the load, 0: the
+                                         !! nodes of its faces do
     real(dp) :: value(3) = 0.0_dp        !! at the end of the step: acceleration, (p, 0, 0),
                                          !! traction vector or nodal force vector
     real(dp) :: start(3) = 0.0_dp        !! at the start of the step
@@ -49,7 +54,7 @@ contains
         call mark_points(loads(i), mesh, points)
         cycle
       end if
-      if (allocated(loads(i)%axes)) cycle
+      if (allocated(loads(i)%axes) .or. loads(i)%surface > 0) cycle
       if (allocated(loads(i)%nodal)) deallocate (loads(i)%nodal)
       allocate (loads(i)%nodal(mesh%n_dim, mesh%n_node), source=0.0_dp)
       if (loads(i)%kind == load_nodal) then
@@ -96,11 +101,12 @@ contains
   end subroutine add_faces
 
   !> External nodal forces at the end of an increment.
-  pure subroutine external_force(f, loads, mesh, points, increment, amplitudes)
+  pure subroutine external_force(f, loads, mesh, points, surface, increment, amplitudes)
     real(dp), intent(out) :: f(:, :)                 !! (n_dim, n_node)  [force]
     type(load_t), intent(in) :: loads(:)             !! prepared loads of the step
     type(mesh_t), intent(in) :: mesh                 !! connectivity
     type(points_t), intent(in) :: points             !! hosts, shape functions and masses
+    type(surface_points_t), intent(in) :: surface    !! hosts and shape functions
     type(time_increment_t), intent(in) :: increment  !! place of the increment in the step
     type(amplitude_t), intent(in) :: amplitudes(:)   !! all amplitudes of the model
     real(dp) :: value(3)
@@ -109,6 +115,10 @@ contains
     f = 0.0_dp
     do i = 1, size(loads)
       value = load_value(loads(i), increment%start + increment%size, increment%period, amplitudes)
+      if (loads(i)%surface > 0) then
+        call add_carried(f, loads(i), value, mesh, surface)
+        cycle
+      end if
       select case (loads(i)%kind)
       case (load_gravity)
         call add_weight(f, loads(i)%point, value(:mesh%n_dim), mesh, points)
@@ -168,6 +178,73 @@ contains
       end do
     end do
   end subroutine add_weight
+
+  !> Adds sum_s S_a(x_s) t_s A_s over the points of a surface. Source: theory.md (20).
+  pure subroutine add_carried(f, load, value, mesh, surface)
+    real(dp), intent(inout) :: f(:, :)            !! (n_dim, n_node)  [force]
+    type(load_t), intent(in) :: load              !! pressure or traction, carried by points
+    real(dp), intent(in) :: value(3)              !! (p, 0, 0) or traction vector
+    type(mesh_t), intent(in) :: mesh              !! connectivity
+    type(surface_points_t), intent(in) :: surface !! hosts and shape functions
+    real(dp) :: force(mesh%n_dim)
+    integer :: a, node, s
+
+    do s = surface%first(load%surface), surface%first(load%surface + 1) - 1
+      if (surface%element(s) == 0) cycle
+      force = value(:mesh%n_dim)
+      if (load%kind == load_pressure) force = -value(1)*surface%normal(:, s)
+      force = surface%area(s)*force
+      do a = 1, mesh%n_dim + 1
+        node = mesh%node(a, surface%element(s))
+        f(:, node) = f(:, node) + surface%shape(a, s)*force
+      end do
+    end do
+  end subroutine add_carried
+
+  !> The loads must act on the body: not on nodes without material, nor on lost surface points.
+  pure subroutine check_applied(error, f, loads, dofs, mesh, surface)
+    type(error_t), allocatable, intent(out) :: error !! exit_model or exit_lost_point
+    real(dp), intent(in) :: f(:, :)                  !! (n_dim, n_node)  external forces
+    type(load_t), intent(in) :: loads(:)             !! loads of the step
+    type(dof_map_t), intent(in) :: dofs              !! active nodes
+    type(mesh_t), intent(in) :: mesh                 !! labels and surfaces
+    type(surface_points_t), intent(in) :: surface    !! located
+    character(:), allocatable :: place
+    integer :: i, lost, node
+
+    node = loaded_inactive_node(f, dofs)
+    if (node > 0) then
+      call make_error(error, exit_model, "error: node "//integer_text(mesh%node_label(node))// &
+                      " carries a load but belongs to no element that holds material points: "// &
+                      "expected loads on the body only")
+      return
+    end if
+    lost = lost_surface_point(loads, surface)
+    if (lost == 0) return
+    place = real_text(surface%x(1, lost))
+    do i = 2, mesh%n_dim
+      place = place//", "//real_text(surface%x(i, lost))
+    end do
+    call make_error(error, exit_lost_point, "error: the loaded surface '"// &
+                    mesh%surface(surface_of_point(surface, lost))%name//"' lost the body at ("// &
+                    place//"): expected an element with material points nearer than its own size")
+  end subroutine check_applied
+
+  !> First surface point of a load that has no element to act on.
+  pure function lost_surface_point(loads, surface) result(lost)
+    type(load_t), intent(in) :: loads(:)          !! loads of the step
+    type(surface_points_t), intent(in) :: surface !! located
+    integer :: lost                               !! 0 if there is none
+    integer :: i
+
+    do i = 1, size(loads)
+      if (loads(i)%surface == 0) cycle
+      do lost = surface%first(loads(i)%surface), surface%first(loads(i)%surface + 1) - 1
+        if (surface%element(lost) == 0) return
+      end do
+    end do
+    lost = 0
+  end function lost_surface_point
 
   !> First node that carries a force but belongs to no active element.
   pure function loaded_inactive_node(f, dofs) result(node)

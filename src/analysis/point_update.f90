@@ -1,6 +1,7 @@
 !> End of an increment: the trial state is accepted and the points move.
 module mpm_point_update
   use mpm_kinds, only: dp
+  use mpm_surface_points, only: move_surface_points
   use mpm_system, only: body_t, system_t
   use mpm_tensor, only: identity
   implicit none
@@ -32,6 +33,7 @@ contains
       !$omp end parallel do
       points%state = system%trial
     end associate
+    call move_surface_points(body%surface, body%mesh, system%u)
   end subroutine accept_points
 
 end module mpm_point_update

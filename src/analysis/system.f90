@@ -13,6 +13,7 @@ module mpm_system
   use mpm_mesh, only: mesh_t
   use mpm_patches, only: patches_t
   use mpm_sparsity, only: assembly_map_t
+  use mpm_surface_points, only: surface_points_t
   implicit none
   private
   public :: system_t, body_t, evaluate, find_active, free_system, open_system
@@ -27,6 +28,7 @@ module mpm_system
     type(mesh_t)    :: mesh                     !! at the start of the increment
     type(patches_t) :: patches                  !! over which F-bar averages; single elements: standard method
     type(points_t)  :: points                   !! converged
+    type(surface_points_t) :: surface           !! carry tractions with the body
     type(material_t), allocatable :: material(:)
   end type body_t
 

@@ -142,6 +142,9 @@ contains
     call add_keyword(schema, "DSLOAD", "step", in_step, once_never, &
                      "Dead tractions on a surface.")
     call add_load_parameters(schema)
+    call add_parameter(schema, value_rule_t("CARRIER", value_choice, required=.false., &
+                                            choices="MESH|POINTS", default="MESH", &
+                                            meaning="faces of the mesh, or points of the body"))
     call add_layout(schema, 1, many, layout_t(field_number=2, field_value="TRVEC"))
     call add_field(schema, value_rule_t("surface", value_name, meaning="surface"))
     call add_field(schema, value_rule_t("type", value_choice, choices="P|TRVEC", &

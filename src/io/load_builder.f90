@@ -2,12 +2,12 @@
 module mpm_load_builder
   use mpm_amplitude, only: amplitude_t, amplitude_value
   use mpm_boundary_builder, only: boundary_state_t, check_operation, find_amplitude, nodes_of_field
-  use mpm_build_context, only: at_field, build_context_t, fault, place_t, require_element_set, &
-    & require_surface
+  use mpm_build_context, only: at_field, build_context_t, fault, place_t, require_element_set
   use mpm_deck_card, only: deck_t, field_count, field_integer, field_real, field_text
   use mpm_diagnostics, only: quoted
   use mpm_external_force, only: load_gravity, load_nodal, load_pressure, load_t, load_traction
   use mpm_kinds, only: dp
+  use mpm_loaded_surface, only: take_surface
   use mpm_model, only: model_t
   use mpm_nodal_frames, only: node_axes
   use mpm_text, only: integer_text, real_text, to_upper
@@ -180,14 +180,12 @@ contains
   !> A line of *DSLOAD: surface, P and pressure, or TRVEC, magnitude and direction.
   subroutine build_surface_load(new, model, deck, context)
     type(load_entry_t), intent(inout) :: new        !! card and line in, load out
-    type(model_t), intent(in) :: model              !! with mesh
+    type(model_t), intent(in) :: model              !! with mesh and points
     type(deck_t), intent(in) :: deck                !! the deck
     type(build_context_t), intent(inout) :: context !! takes errors
-    integer :: found
 
     associate (line => deck%card(new%load%card)%data(new%line))
-      call require_surface(context, deck, model%mesh, at_field(new%load%card, new%line, 1), &
-                           field_text(line, 1), found)
+      call take_surface(new%load, model, deck, context, at_field(new%load%card, new%line, 1))
       if (to_upper(field_text(line, 2)) == "P") then
         new%load%kind = load_pressure
         new%load%value(1) = field_real(line, 3)
@@ -197,9 +195,6 @@ contains
         call read_vector(new, model%mesh%n_dim, deck, context)
         new%key = "DSLOAD T "//to_upper(field_text(line, 1))
       end if
-      if (found == 0) return
-      new%load%item = model%mesh%surface(found)%element
-      new%load%face = model%mesh%surface(found)%face
     end associate
   end subroutine build_surface_load
 
@@ -244,7 +239,14 @@ contains
     do i = 1, state%n
       associate (old => state%entry(i))
         if (old%key /= new%key) cycle
-        if (old%new) then
+        if (old%load%surface /= new%load%surface) then
+          if (old%ends) cycle
+          call fault(context, deck, at_field(new%load%card, new%line, 1), "this surface is " &
+            & //"loaded through the other CARRIER in line " &
+            & //integer_text(deck%card(old%load%card)%data(old%line)%number) &
+            & //": expected the same one, or OP=NEW")
+          return
+        else if (old%new) then
           call fault(context, deck, at_field(new%load%card, new%line, 1), "this load is given in " &
             & //"line "//integer_text(deck%card(old%load%card)%data(old%line)%number) &
             & //" of the same step already: expected it once")

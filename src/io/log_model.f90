@@ -127,7 +127,7 @@ contains
            //" linear elements, volume "//real_text(sum(model%mesh%volume))//line_end &
            //"points: "//integer_text(model%points%n)//", volume " &
            //real_text(sum(model%points%volume))//", mass "//real_text(sum(model%points%mass)) &
-           //line_end//"patches: "//integer_text(model%patches%n)
+           //line_end//surface_text(model)//"patches: "//integer_text(model%patches%n)
     if (model%patches%n > 0) then
       sizes = model%patches%first(2:) - model%patches%first(:model%patches%n)
       text = text//", elements per patch: "//integer_text(minval(sizes))//" to " &
@@ -136,6 +136,17 @@ contains
     ! A model with a free rigid-body mode has been refused by mpm_support_check.
     text = text//line_end//"rigid-body modes left free: none"//line_end
   end function mesh_text
+
+  !> Points that carry tractions; empty if there are none.
+  pure function surface_text(model) result(text)
+    type(model_t), intent(in) :: model
+    character(:), allocatable :: text
+
+    text = ""
+    if (model%surface%n == 0) return
+    text = "surface points: "//integer_text(model%surface%n)//", area " &
+           //real_text(sum(model%surface%area))//line_end
+  end function surface_text
 
   !> Free unknowns per volume that the material wants to keep, with and without patches.
   pure function freedom_ratio_text(model) result(text)

@@ -13,6 +13,7 @@ module mpm_model
   use mpm_nodal_frames, only: nodal_frames_t
   use mpm_patches, only: patches_t
   use mpm_point_location, only: location_settings_t
+  use mpm_surface_points, only: surface_points_t
   implicit none
   private
   public :: model_t, step_t, field_output_t, history_request_t, expectation_t
@@ -85,6 +86,7 @@ module mpm_model
     type(patches_t)           :: patches      !! those of the deck, also with the standard formulation
     type(material_t), allocatable  :: material(:)
     type(points_t)            :: points
+    type(surface_points_t)    :: surface      !! of the loads with CARRIER=POINTS
     type(mesh_motion_t)       :: motion
     type(nodal_frames_t)      :: frames       !! axes of the nodes
     type(location_settings_t) :: location

@@ -1,5 +1,6 @@
 !> Builds the model that a deck describes. All faults are collected, each with its place.
 module mpm_model_builder
+  use mpm_body_faces, only: turn_faces_to_body
   use mpm_build_context, only: at_card, build_context_t, fault, report_unused
   use mpm_deck_card, only: deck_t, parameter_text
   use mpm_diagnostics, only: diagnostics_t, to_error
@@ -14,6 +15,7 @@ module mpm_model_builder
   use mpm_set_builder, only: build_sets
   use mpm_step_builder, only: build_steps
   use mpm_support_check, only: find_free_modes
+  use mpm_surface_points, only: sample_surfaces
   use mpm_text, only: integer_text
   implicit none
   private
@@ -42,7 +44,9 @@ contains
       call build_method(model, deck, context, mesh%parent%order)
       call build_points(model, deck, context)
       call build_frames(model%frames, model%mesh, deck, context)
+      if (model%points%n > 0) call turn_faces_to_body(model%mesh, model%points)
       call build_steps(model, deck, context)
+      call sample_surfaces(model%surface, model%mesh, carrying_surfaces(model))
       if (context%diag%n_errors == 0) call report_unused(context, deck)
       if (context%diag%n_errors == 0) call check_supports(model, deck, context)
       if (context%diag%n_errors == 0) call check_driver(model, deck, context)
@@ -91,6 +95,20 @@ contains
     call build_sets(mesh, deck, context)
     call build_linear_mesh(model%mesh, mesh, deck, context, source)
   end subroutine build_meshes
+
+  !> Which surfaces carry a load on points of the body in some step.
+  pure function carrying_surfaces(model) result(carries)
+    type(model_t), intent(in) :: model !! with mesh and steps
+    logical, allocatable :: carries(:) !! (n_surface)
+    integer :: i, j
+
+    allocate (carries(size(model%mesh%surface)), source=.false.)
+    do i = 1, size(model%step)
+      do j = 1, size(model%step(i)%load)
+        if (model%step(i)%load(j)%surface > 0) carries(model%step(i)%load(j)%surface) = .true.
+      end do
+    end do
+  end function carrying_surfaces
 
   !> Every body must be held in every step.
   subroutine check_supports(model, deck, context)
