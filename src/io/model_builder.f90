@@ -46,7 +46,8 @@ contains
       call build_frames(model%frames, model%mesh, deck, context)
       if (model%points%n > 0) call turn_faces_to_body(model%mesh, model%points)
       call build_steps(model, deck, context)
-      call sample_surfaces(model%surface, model%mesh, carrying_surfaces(model))
+      if (model%points%n > 0) call sample_surfaces(model%surface, model%mesh, model%points, &
+                                                   carrying_surfaces(model))
       if (context%diag%n_errors == 0) call report_unused(context, deck)
       if (context%diag%n_errors == 0) call check_supports(model, deck, context)
       if (context%diag%n_errors == 0) call check_driver(model, deck, context)

@@ -2,8 +2,10 @@
 module mpm_surface_points
   use mpm_element_bins, only: build_bins, is_current
   use mpm_kinds, only: dp
+  use mpm_material_points, only: points_t
   use mpm_mesh, only: face_geometry, mesh_t
   use mpm_point_location, only: locator_t, search_bins, walk
+  use mpm_point_rules, only: point_rule
   implicit none
   private
   public :: surface_points_t
@@ -27,22 +29,22 @@ module mpm_surface_points
 
 contains
 
-  !> Puts points on the faces of surfaces: the Gauss points of an edge, or three of a triangle,
-  !! so that linear functions are integrated exactly. Source: theory.md (20).
-  pure subroutine sample_surfaces(surface, mesh, sampled)
+  !> Puts points on the faces of surfaces, as densely as the material points lie in their elements.
+  !! Linear functions are integrated exactly. Source: theory.md (20).
+  pure subroutine sample_surfaces(surface, mesh, points, sampled)
     type(surface_points_t), intent(out) :: surface !! points on their faces
-    type(mesh_t), intent(in) :: mesh               !! initial mesh
-    logical, intent(in)      :: sampled(:)         !! (n_surface)  gets points
+    type(mesh_t), intent(in)   :: mesh             !! initial mesh
+    type(points_t), intent(in) :: points           !! initial points, grouped by host
+    logical, intent(in)        :: sampled(:)       !! (n_surface)  gets points
 
-    real(dp) :: weight(mesh%n_dim, mesh%n_dim)
-    real(dp), allocatable :: area(:), normal(:, :)
+    real(dp), allocatable :: area(:), normal(:, :), weight(:, :)
     integer :: i, k, n, s
 
-    weight = face_rule(mesh%n_dim)
-    allocate (surface%first(size(sampled) + 1), source=1)
+    surface%first = [(1, i=0, size(sampled))]
     do k = 1, size(sampled)
       n = 0
-      if (sampled(k)) n = mesh%n_dim*size(mesh%surface(k)%face)
+      if (sampled(k)) n = sum([(size(face_rule(mesh, points, mesh%surface(k)%element(i)), 2), &
+                                i=1, size(mesh%surface(k)%element))])
       surface%first(k + 1) = surface%first(k) + n
     end do
     surface%n = surface%first(size(sampled) + 1) - 1
@@ -50,12 +52,15 @@ contains
     do k = 1, size(sampled)
       if (.not. sampled(k)) cycle
       call face_geometry(mesh, mesh%surface(k), area, normal)
+      s = surface%first(k)
       do i = 1, size(area)
-        s = surface%first(k) + mesh%n_dim*(i - 1)
-        surface%area(s:s + mesh%n_dim - 1) = area(i)/real(mesh%n_dim, dp)
-        surface%normal(:, s:s + mesh%n_dim - 1) = spread(normal(:, i), 2, mesh%n_dim)
+        weight = face_rule(mesh, points, mesh%surface(k)%element(i))
+        n = size(weight, 2)
+        surface%area(s:s + n - 1) = area(i)/real(n, dp)
+        surface%normal(:, s:s + n - 1) = spread(normal(:, i), 2, n)
         call place_on_face(surface, s, mesh, [mesh%surface(k)%element(i), &
           mesh%surface(k)%face(i)], weight)
+        s = s + n
       end do
     end do
   end subroutine sample_surfaces
@@ -72,35 +77,44 @@ contains
     allocate (surface%element(surface%n), source=0)
   end subroutine allocate_surface_points
 
-  !> Coordinates of the points of a face over its corners; the points have equal weights.
-  pure function face_rule(n_dim) result(weight)
-    integer, intent(in) :: n_dim     !! 2 or 3
-    real(dp) :: weight(n_dim, n_dim) !! (n_dim, n_dim)  shape functions of the face, per point [-]
+  !> Coordinates of the points of a face over its corners; the points have equal weights. Two Gauss
+  !! points on an edge, three points on a triangle; with more than two material points along an edge
+  !! of the element, as many on the edge, or the centroids of so many sub-triangles squared.
+  pure function face_rule(mesh, points, element) result(weight)
+    type(mesh_t), intent(in)   :: mesh    !! initial mesh
+    type(points_t), intent(in) :: points  !! initial points, grouped by host
+    integer, intent(in)        :: element !! element of the face
+    real(dp), allocatable :: weight(:, :) !! (n_dim, n)  shape functions of the face, per point [-]
 
-    integer :: i
+    real(dp), allocatable :: equal(:)
+    real(dp), parameter :: gauss = 0.5_dp/sqrt(3.0_dp)
+    integer :: i, along
+    logical :: found
 
-    if (n_dim == 2) then
-      weight = 0.5_dp - 0.5_dp/sqrt(3.0_dp)
+    along = nint(real(points%first(element + 1) - points%first(element), dp) &
+                 **(1.0_dp/real(mesh%n_dim, dp)))
+    if (mesh%n_dim == 3) then
+      call point_rule(2, merge(3, along**2, along <= 2), weight, equal, found)
+    else if (along <= 2) then
+      weight = reshape([0.5_dp + gauss, 0.5_dp - gauss, 0.5_dp - gauss, 0.5_dp + gauss], [2, 2])
     else
-      weight = 1.0_dp/6.0_dp
+      equal = [((real(i, dp) - 0.5_dp)/real(along, dp), i=1, along)]
+      weight = transpose(reshape([1.0_dp - equal, equal], [along, 2]))
     end if
-    do i = 1, n_dim
-      weight(i, i) = 1.0_dp - sum(weight(:, i)) + weight(i, i)
-    end do
   end function face_rule
 
   !> Places the points of one face.
   pure subroutine place_on_face(surface, s, mesh, face, weight)
-    type(surface_points_t), intent(inout) :: surface !! element, shape, x of n_dim points are set
+    type(surface_points_t), intent(inout) :: surface !! element, shape, x of n points are set
     integer, intent(in)      :: s             !! first point of the face
     type(mesh_t), intent(in) :: mesh          !! initial mesh
     integer, intent(in)      :: face(2)       !! (2)  element, local node opposite the face
-    real(dp), intent(in)     :: weight(:, :)  !! (n_dim, n_dim)  coordinates over the corners [-]
+    real(dp), intent(in)     :: weight(:, :)  !! (n_dim, n)  coordinates over the corners [-]
 
     integer :: a, corner(mesh%n_dim), i
 
     corner = pack([(a, a=1, mesh%n_dim + 1)], [(a /= face(2), a=1, mesh%n_dim + 1)])
-    do i = 1, mesh%n_dim
+    do i = 1, size(weight, 2)
       surface%element(s + i - 1) = face(1)
       surface%shape(corner, s + i - 1) = weight(:, i)
       surface%x(:, s + i - 1) = matmul(mesh%x(:, mesh%node(corner, face(1))), weight(:, i))
