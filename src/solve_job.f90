@@ -7,6 +7,7 @@ module mpm_solve_job
   use mpm_error, only: error_t, exit_lost_point, exit_model, exit_no_convergence, exit_solver, &
     make_error
   use mpm_external_force, only: check_applied, external_force, prepare_loads
+  use mpm_geostatic_step, only: report_move
   use mpm_increments, only: accept_step, begin_step, cut_back, schedule_t, start_increment
   use mpm_kinds, only: dp, ip
   use mpm_linear_solver, only: analyse, solver_memory, solver_ok
@@ -92,7 +93,9 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(newton_report_t)   :: report
     type(location_report_t) :: location
+    real(dp), allocatable   :: u_start(:, :)
 
+    u_start = analysis%body%points%u
     associate (body => analysis%body, system => analysis%system, schedule => analysis%schedule)
       do while (.not. schedule%finished)
         call start_increment(schedule) ! size from the last outcome
@@ -126,6 +129,7 @@ contains
         call check_count(schedule, model, error)
         if (allocated(error)) return
       end do
+      call report_move(output%log, model%step(schedule%step), body%points, u_start, error)
     end associate
   end subroutine solve_step
 

@@ -666,7 +666,7 @@ job.inp:19:1: error: *STEP inside a step: expected *END STEP before it
         [("*STATIC, DIRECT\n1, 1\n", "")],
         2,
         text("""
-job.inp:16:1: error: step without procedure: expected *STATIC in it
+job.inp:16:1: error: step without procedure: expected *STATIC or *GEOSTATIC in it
    16 | *STEP, NAME=PUSH, INC=20
       | ^~~~~
 """),
@@ -1489,6 +1489,93 @@ job.inp:26:1: error: this surface is loaded through the other CARRIER in line 24
    26 | X1, P, 2
       | ^~
 """),
+    ),
+    Case(
+        "two_procedures",
+        PLANE,
+        [("1, 1\n*BOUNDARY", "1, 1\n*GEOSTATIC\n*BOUNDARY")],
+        2,
+        text("""
+job.inp:19:1: error: *GEOSTATIC in a step that has *STATIC in line 17: expected one of them
+   19 | *GEOSTATIC
+      | ^~~~~~~~~~
+"""),
+    ),
+    Case(
+        "initial_stress_twice",
+        PLANE,
+        [("*STEP", "*INITIAL CONDITIONS, TYPE=STRESS\nALL, 0, 0, 0\nALL, 0, -1, 0\n*STEP")],
+        2,
+        text("""
+job.inp:18:1: error: element 1 has an initial stress by line 17 already: expected sets that do not overlap
+   18 | ALL, 0, -1, 0
+      | ^~~
+"""),
+    ),
+    Case(
+        "initial_stress_out_of_plane",
+        PLANE,
+        [("*STEP", "*INITIAL CONDITIONS, TYPE=STRESS\nALL, 0, 0, 0, 0, 0, 0.1\n*STEP")],
+        2,
+        text("""
+job.inp:17:21: error: shear stress out of the plane in plane strain: expected s11, s22, s33, s12 and nothing but 0 after them
+   17 | ALL, 0, 0, 0, 0, 0, 0.1
+      |                     ^~~
+"""),
+    ),
+    Case(
+        "initial_stress_between_equal_heights",
+        PLANE,
+        [("*STEP", "*INITIAL CONDITIONS, TYPE=STRESS, GEOSTATIC\nALL, 0, 2, -1, 2, 0.5\n*STEP")],
+        2,
+        text("""
+job.inp:17:16: error: both heights are 2: expected two different ones
+   17 | ALL, 0, 2, -1, 2, 0.5
+      |                ^
+"""),
+    ),
+    Case(
+        "initial_stress_of_empty_elements",
+        NODES,
+        [
+            ("*FORMULATION", "*ELSET, ELSET=LOW\n1\n*ELSET, ELSET=HIGH\n2\n*FORMULATION"),
+            ("ELSET=BODY, MATERIAL", "ELSET=LOW, MATERIAL"),
+            ("*STEP", "*INITIAL CONDITIONS, TYPE=STRESS\nHIGH, 0, 0, 0\n*STEP"),
+        ],
+        2,
+        text("""
+job.inp:22:1: error: no material points in the elements of 'HIGH': expected elements of the body
+   22 | HIGH, 0, 0, 0
+      | ^~~~
+job.inp:29:1: error: '4' touches no element with material points: expected nodes of the body
+   29 | 4, 1, 1
+      | ^
+"""),
+    ),
+    Case(
+        "initial_stress_beyond_yield",
+        PLANE,
+        [("*STEP", "*INITIAL CONDITIONS, TYPE=STRESS\nALL, -1, -3, -1\n*STEP")],
+        2,
+        text("""
+job.inp:17:1: error: the initial stress of material point 1 in element 1 is outside the yield surface, sqrt(3 J2) = 2: expected at most 1
+   17 | ALL, -1, -3, -1
+      | ^~~
+"""),
+    ),
+    Case(
+        "geostatic_step_that_moves",
+        PLANE,
+        [
+            ("*STATIC, DIRECT\n1, 1\n", "*GEOSTATIC, UTOL=1e-6\n"),
+            ("Y1, 2, 2, -0.001\n", "*DLOAD\nALL, GRAV, 0.01, 0, -1\n"),
+            ("*EXPECT, QUANTITY=U, SET=Y1, COMPONENT=2\nanalytic, -0.001, 1e-9\n", ""),
+        ],
+        3,
+        text("""
+error: material point 6 moved by 8.79335e-5 in the *GEOSTATIC step 'PUSH': expected at most UTOL=1e-6, which needs an initial stress in equilibrium with the loads
+"""),
+        arguments=("-q",),
     ),
     Case(
         "moving_mesh_with_zero_direction",

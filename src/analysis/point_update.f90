@@ -1,12 +1,13 @@
 !> End of an increment: the trial state is accepted and the points move.
 module mpm_point_update
   use mpm_kinds, only: dp
+  use mpm_material_points, only: points_t
   use mpm_surface_points, only: move_surface_points
   use mpm_system, only: body_t, system_t
   use mpm_tensor, only: identity
   implicit none
   private
-  public :: accept_points
+  public :: accept_points, find_largest_move
 
 contains
 
@@ -35,5 +36,25 @@ contains
     end associate
     call move_surface_points(body%surface, body%mesh, system%u)
   end subroutine accept_points
+
+  !> The point with a host that has moved farthest since its displacements were noted.
+  pure subroutine find_largest_move(point, distance, points, u_before)
+    integer, intent(out)       :: point          !! of equal ones the first, 0 without points
+    real(dp), intent(out)      :: distance       !! length of its way [length]
+    type(points_t), intent(in) :: points         !! converged
+    real(dp), intent(in)       :: u_before(:, :) !! (n_dim, n)  displacements before [length]
+    real(dp) :: way
+    integer  :: p
+
+    point = 0
+    distance = 0.0_dp
+    do p = 1, points%n
+      if (points%element(p) == 0) cycle
+      way = norm2(points%u(:, p) - u_before(:, p))
+      if (point > 0 .and. way <= distance) cycle
+      point = p
+      distance = way
+    end do
+  end subroutine find_largest_move
 
 end module mpm_point_update

@@ -9,8 +9,7 @@ module mpm_deck_schema
   private
   public :: build_schema, find_keyword, keyword_hint, is_later_keyword
 
-  character(18), parameter :: later_keyword(3) = [character(18) :: "GHOST PENALTY", &
-                                                  "INITIAL CONDITIONS", "RESTART"]
+  character(18), parameter :: later_keyword(2) = [character(18) :: "GHOST PENALTY", "RESTART"]
 
 contains
 

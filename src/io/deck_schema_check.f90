@@ -16,7 +16,7 @@ module mpm_deck_schema_check
   type :: walk_t
     logical :: inside = .false. !! between *STEP and *END STEP
     integer :: step = 0         !! card of the last *STEP, 0 before
-    logical :: has_procedure = .false. !! the step has its *STATIC
+    integer :: procedure = 0    !! card of the *STATIC or *GEOSTATIC of the step, 0 without
   end type walk_t
 
 contains
@@ -87,7 +87,7 @@ contains
     end if
   end subroutine refuse_keyword
 
-  !> Follows the steps: each ends before the next, none ends twice, each has a *STATIC.
+  !> Follows the steps: each ends before the next, none ends twice, each has one procedure.
   pure subroutine check_steps(deck, i_card, walk, diag)
     type(deck_t), intent(in)           :: deck   !! complete deck
     integer, intent(in)                :: i_card !! card of a known keyword
@@ -110,19 +110,37 @@ contains
                               "*END STEP without a step: expected *STEP before it")
       end if
       walk%inside = .false.
-    case ("STATIC")
-      walk%has_procedure = .true.
+    case ("STATIC", "GEOSTATIC")
+      call check_only_procedure(deck, i_card, walk, diag)
+      walk%procedure = i_card
     end select
   end subroutine check_steps
 
-  !> Reports a step without *STATIC.
+  !> Reports a second procedure of another kind in a step.
+  pure subroutine check_only_procedure(deck, i_card, walk, diag)
+    type(deck_t), intent(in)           :: deck   !! complete deck
+    integer, intent(in)                :: i_card !! *STATIC or *GEOSTATIC
+    type(walk_t), intent(in)           :: walk   !! before the card
+    type(diagnostics_t), intent(inout) :: diag   !! gets the error
+
+    if (walk%procedure == 0) return
+    associate (first => deck%card(walk%procedure), second => deck%card(i_card))
+      if (first%keyword == second%keyword) return
+      call error_at_keyword(diag, deck, i_card, "*"//second%keyword//" in a step that has *"// &
+                            first%keyword//" in line "//integer_text(first%head%number)// &
+                            ": expected one of them")
+    end associate
+  end subroutine check_only_procedure
+
+  !> Reports a step without *STATIC and *GEOSTATIC.
   pure subroutine check_procedure(deck, walk, diag)
     type(deck_t), intent(in)           :: deck !! complete deck
     type(walk_t), intent(in)           :: walk !! at the end of a step
     type(diagnostics_t), intent(inout) :: diag !! gets the error
 
-    if (walk%has_procedure) return
-    call error_at_keyword(diag, deck, walk%step, "step without procedure: expected *STATIC in it")
+    if (walk%procedure > 0) return
+    call error_at_keyword(diag, deck, walk%step, &
+                          "step without procedure: expected *STATIC or *GEOSTATIC in it")
   end subroutine check_procedure
 
   !> Checks that a card stands in the right part of the deck.

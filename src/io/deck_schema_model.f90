@@ -2,7 +2,7 @@
 module mpm_deck_schema_model
   use mpm_deck_schema_rule, only: add_field, add_keyword, add_layout, add_parameter, in_both, &
     in_model, layout_t, once_in_deck, once_in_scope, once_never, schema_t, value_choice, &
-    value_integer, value_name, value_new_name, value_real, value_reals, value_rule_t
+    value_flag, value_integer, value_name, value_new_name, value_real, value_reals, value_rule_t
   implicit none
   private
   public :: add_model_keywords
@@ -24,6 +24,7 @@ contains
     call add_plastic(schema)
     call add_amplitude(schema)
     call add_transform(schema)
+    call add_initial_conditions(schema)
   end subroutine add_model_keywords
 
   !> *FORMULATION and *PATCH.
@@ -157,5 +158,37 @@ contains
     call add_field(schema, value_rule_t("zb", value_real, required=.false., &
                                         meaning="point b; in a plane mesh it may be left out"))
   end subroutine add_transform
+
+  !> *INITIAL CONDITIONS.
+  pure subroutine add_initial_conditions(schema)
+    type(schema_t), intent(inout) :: schema !! gets the keyword
+    character(3), parameter :: component(6) = ["s11", "s22", "s33", "s12", "s23", "s13"]
+    integer :: i
+
+    call add_keyword(schema, "INITIAL CONDITIONS", "tables", in_model, once_never, &
+                     "Cauchy stress with which the points of a set start.")
+    call add_parameter(schema, value_rule_t("TYPE", value_choice, choices="STRESS", &
+                                            meaning="what is given"))
+    call add_parameter(schema, value_rule_t("GEOSTATIC", value_flag, required=.false., &
+                                            meaning="linear in the height"))
+    call add_layout(schema, 1, many, layout_t("GEOSTATIC"))
+    call add_field(schema, value_rule_t("set", value_name, meaning="element set"))
+    call add_field(schema, value_rule_t("s_1", value_real, &
+                                        meaning="vertical stress at the first height"))
+    call add_field(schema, value_rule_t("height_1", value_real, meaning="z, in plane strain y"))
+    call add_field(schema, value_rule_t("s_2", value_real, &
+                                        meaning="vertical stress at the second height"))
+    call add_field(schema, value_rule_t("height_2", value_real, meaning="another one"))
+    call add_field(schema, value_rule_t("K0", value_real, range=">= 0", &
+                                        meaning="horizontal over vertical stress"))
+    call add_field(schema, value_rule_t("K0_2", value_real, required=.false., range=">= 0", &
+      meaning="the same in y, in plane strain out of the plane; default K0"))
+    call add_layout(schema, 1, many, layout_t())
+    call add_field(schema, value_rule_t("set", value_name, meaning="element set"))
+    do i = 1, 6
+      call add_field(schema, value_rule_t(component(i), value_real, required=i < 4, &
+                                          default=merge("0", " ", i > 3), meaning="component"))
+    end do
+  end subroutine add_initial_conditions
 
 end module mpm_deck_schema_model

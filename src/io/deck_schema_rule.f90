@@ -50,7 +50,7 @@ module mpm_deck_schema_rule
     character(8)  :: field_value = "" !! ... when it has this value
     logical       :: repeats = .false. !! the fields may follow each other again in one line
     integer       :: n_fields = 0     !! 0 = no data lines
-    type(value_rule_t) :: field(6)
+    type(value_rule_t) :: field(8)
   end type layout_t
 
   !> The rules of a keyword.

@@ -27,7 +27,7 @@ contains
     call add_keyword(schema, "END STEP", "step", in_step, once_never, "Ends a step.")
   end subroutine add_step_keywords
 
-  !> *STEP and *STATIC.
+  !> *STEP, *STATIC and *GEOSTATIC.
   pure subroutine add_step(schema)
     type(schema_t), intent(inout) :: schema !! gets the keywords
 
@@ -38,10 +38,24 @@ contains
     call add_parameter(schema, value_rule_t("INC", value_integer, required=.false., range="> 0", &
                                             default="100", meaning="most increments of the step"))
     call add_keyword(schema, "STATIC", "step", in_step, once_in_scope, &
-                     "Quasi-static equilibrium; every step needs it.")
+                     "Quasi-static equilibrium; every step needs it or *GEOSTATIC.")
     call add_parameter(schema, value_rule_t("DIRECT", value_flag, required=.false., &
                                             meaning="equal increments, cut only when one fails"))
-    call add_layout(schema, 1, 1, layout_t())
+    call add_schedule(schema, 1)
+    call add_keyword(schema, "GEOSTATIC", "step", in_step, once_in_scope, &
+                     "Equilibrium of an initial stress, in place of *STATIC: loads are in "// &
+                     "force from the beginning of the step.")
+    call add_parameter(schema, value_rule_t("UTOL", value_real, required=.false., range="> 0", &
+                                            meaning="largest displacement of a point accepted"))
+    call add_schedule(schema, 0)
+  end subroutine add_step
+
+  !> The data line of *STATIC and *GEOSTATIC.
+  pure subroutine add_schedule(schema, n_least)
+    type(schema_t), intent(inout) :: schema  !! its last keyword gets a data line
+    integer, intent(in)           :: n_least !! 1: it must be there; 0: it may
+
+    call add_layout(schema, n_least, 1, layout_t())
     call add_field(schema, value_rule_t("initial", value_real, range="> 0", &
                                         meaning="first increment of time"))
     call add_field(schema, value_rule_t("period", value_real, range="> 0", &
@@ -50,7 +64,7 @@ contains
                                         meaning="smallest increment"))
     call add_field(schema, value_rule_t("maximum", value_real, required=.false., range="> 0", &
                                         meaning="largest increment"))
-  end subroutine add_step
+  end subroutine add_schedule
 
   !> *CONTROLS.
   pure subroutine add_controls(schema)

@@ -1,5 +1,6 @@
 !> The model in words, for the log.
 module mpm_log_model
+  use mpm_initial_stress, only: initial_stress_t
   use mpm_kinds, only: dp
   use mpm_material, only: law_von_mises, material_t
   use mpm_mesh, only: face_set_t, mesh_t
@@ -35,6 +36,7 @@ contains
     do i = 1, size(model%material)
       text = text//material_text(model%material(i))
     end do
+    if (allocated(model%initial_stress)) text = text//initial_text(model%initial_stress)
     do i = 1, size(model%step)
       text = text//step_text(model%step(i), i)
     end do
@@ -79,6 +81,22 @@ contains
     text = text//line_end
   end function material_text
 
+  !> Initial stress, line by line.
+  pure function initial_text(initial) result(text)
+    type(initial_stress_t), intent(in) :: initial(:)
+    character(:), allocatable :: text
+    integer :: i
+
+    text = ""
+    do i = 1, size(initial)
+      text = text//"  initial stress of "//integer_text(size(initial(i)%element)) &
+             //" linear elements:"//reals_text(initial(i)%cauchy)
+      if (any(abs(initial(i)%slope) > 0.0_dp)) text = text//" at height " &
+        & //real_text(initial(i)%height)//", change with height"//reals_text(initial(i)%slope)
+      text = text//line_end
+    end do
+  end function initial_text
+
   !> Schedule, controls, conditions and output of one step.
   pure function step_text(step, number) result(text)
     type(step_t), intent(in) :: step !! with everything in force in it
@@ -100,6 +118,7 @@ contains
       text = text//"    prescribed displacements: "//integer_text(size(step%constraint))//line_end
     end if
     if (allocated(step%load)) text = text//"    loads: "//integer_text(size(step%load))//line_end
+    if (step%geostatic) text = text//"    geostatic: loads in force from the beginning"//line_end
     text = text//"    fields: at the end of the step"//output_text(step)//line_end
   end function step_text
 
@@ -249,7 +268,7 @@ contains
 
     text = ""
     do i = 1, size(values)
-      text = text//" "//real_text(values(i))
+      text = text//" "//real_text(merge(values(i), 0.0_dp, abs(values(i)) > 0.0_dp)) ! no -0
     end do
   end function reals_text
 

@@ -5,6 +5,7 @@ module mpm_model
   use mpm_equilibrium, only: newton_settings_t
   use mpm_external_force, only: load_t
   use mpm_increments, only: schedule_settings_t
+  use mpm_initial_stress, only: initial_stress_t
   use mpm_kinds, only: dp
   use mpm_material, only: material_t
   use mpm_material_points, only: points_t
@@ -62,6 +63,8 @@ module mpm_model
   !> A step with everything in force in it (carried-over conditions included).
   type :: step_t
     character(:), allocatable :: name
+    logical                   :: geostatic = .false. !! *GEOSTATIC: loads from the beginning
+    real(dp)                  :: largest_move = 0.0_dp !! > 0: UTOL of *GEOSTATIC [length]
     type(schedule_settings_t) :: schedule
     type(newton_settings_t)   :: newton
     type(constraint_t), allocatable :: constraint(:)
@@ -87,6 +90,7 @@ module mpm_model
     type(material_t), allocatable  :: material(:)
     type(points_t)            :: points
     type(surface_points_t)    :: surface      !! of the loads with CARRIER=POINTS
+    type(initial_stress_t), allocatable :: initial_stress(:) !! set in the points already
     type(mesh_motion_t)       :: motion
     type(nodal_frames_t)      :: frames       !! axes of the nodes
     type(location_settings_t) :: location

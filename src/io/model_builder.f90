@@ -7,6 +7,7 @@ module mpm_model_builder
   use mpm_driver_check, only: check_driver
   use mpm_error, only: error_t, exit_model
   use mpm_frame_builder, only: build_frames
+  use mpm_initial_builder, only: build_initial_stress
   use mpm_labelled_mesh, only: labelled_mesh_t
   use mpm_material_builder, only: build_amplitudes, build_materials
   use mpm_mesh_builder, only: build_linear_mesh, build_parents
@@ -45,6 +46,7 @@ contains
       call build_points(model, deck, context)
       call build_frames(model%frames, model%mesh, deck, context)
       if (model%points%n > 0) call turn_faces_to_body(model%mesh, model%points)
+      call build_initial_stress(model, deck, context)
       call build_steps(model, deck, context)
       if (model%points%n > 0) call sample_surfaces(model%surface, model%mesh, model%points, &
                                                    carrying_surfaces(model))

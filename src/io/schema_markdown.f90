@@ -105,6 +105,7 @@ contains
       text = integer_text(rule%min_lines)//" or more"
     else
       text = integer_text(rule%max_lines)
+      if (rule%min_lines < rule%max_lines) text = "at most "//text
     end if
   end function number_of_lines
 

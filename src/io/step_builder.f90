@@ -6,6 +6,7 @@ module mpm_step_builder
   use mpm_deck_card, only: deck_t, field_count, field_real, has_parameter, parameter_integer, &
     & parameter_real, parameter_text
   use mpm_expectation_builder, only: build_expectation
+  use mpm_external_force, only: load_t
   use mpm_kinds, only: dp
   use mpm_load_builder, only: add_loads, begin_load_step, close_load_step, load_state_t
   use mpm_model, only: history_request_t, model_t, step_t
@@ -77,8 +78,8 @@ contains
       call begin_load_step(loads, deck, context, range(1), range(2))
       do i = range(1), range(2)
         select case (deck%card(i)%keyword)
-        case ("STATIC")
-          call build_schedule(step, deck, context, i)
+        case ("STATIC", "GEOSTATIC")
+          call build_procedure(step, deck, context, i)
         case ("CONTROLS")
           call build_controls(step, deck, i)
         case ("BOUNDARY")
@@ -91,6 +92,7 @@ contains
       end do
       call close_boundary_step(step%constraint, boundary, step%schedule%period, model%amplitude)
       call close_load_step(step%load, loads, step%schedule%period, model%amplitude)
+      if (step%geostatic) call apply_at_once(step%load)
     end associate
     call build_requests(step, model, deck, context, range, time)
     time = time + step%schedule%period
@@ -117,12 +119,34 @@ contains
     step%newton = model%step(n - 1)%newton
   end subroutine open_step
 
-  !> *STATIC.
+  !> *STATIC or *GEOSTATIC; without its data line one increment of size 1.
+  subroutine build_procedure(step, deck, context, i_card)
+    type(step_t), intent(inout) :: step             !! procedure and schedule are set
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes errors
+    integer, intent(in) :: i_card                   !! *STATIC or *GEOSTATIC
+
+    step%geostatic = deck%card(i_card)%keyword == "GEOSTATIC"
+    step%largest_move = parameter_real(deck%card(i_card), "UTOL", 0.0_dp)
+    if (size(deck%card(i_card)%data) > 0) call build_schedule(step, deck, context, i_card)
+  end subroutine build_procedure
+
+  !> Loads without amplitude are in force from the beginning of the step.
+  pure subroutine apply_at_once(load)
+    type(load_t), intent(inout) :: load(:) !! loads of a *GEOSTATIC step
+    integer :: i
+
+    do i = 1, size(load)
+      load(i)%start = load(i)%value
+    end do
+  end subroutine apply_at_once
+
+  !> The data line of *STATIC or *GEOSTATIC.
   subroutine build_schedule(step, deck, context, i_card)
     type(step_t), intent(inout) :: step             !! schedule is set
     type(deck_t), intent(in) :: deck                !! the deck
     type(build_context_t), intent(inout) :: context !! takes errors
-    integer, intent(in) :: i_card                   !! *STATIC
+    integer, intent(in) :: i_card                   !! *STATIC or *GEOSTATIC
     real(dp) :: needed
 
     associate (line => deck%card(i_card)%data(1), schedule => step%schedule)

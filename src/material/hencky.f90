@@ -5,7 +5,7 @@ module mpm_hencky
   use mpm_tensor, only: log1p
   implicit none
   private
-  public :: hencky_moduli, hencky_stress, spatial_moduli
+  public :: hencky_moduli, hencky_strain, hencky_stress, spatial_moduli
 
 contains
 
@@ -19,6 +19,18 @@ contains
     volumetric = sum(strain)
     kirchhoff = (bulk - 2.0_dp/3.0_dp*shear)*volumetric + 2.0_dp*shear*strain
   end function hencky_stress
+
+  !> Principal elastic logarithmic strain of a stress, the inverse of `hencky_stress`:
+  !! eps = dev(tau)/(2 G) + tr(tau)/(9 K). Source: theory.md (21a).
+  pure function hencky_strain(bulk, shear, kirchhoff) result(strain)
+    real(dp), intent(in) :: bulk, shear  !! K and G [force/length^2]
+    real(dp), intent(in) :: kirchhoff(3) !! principal Kirchhoff stress [force/length^2]
+    real(dp) :: strain(3)                !! [-]
+    real(dp) :: mean
+
+    mean = sum(kirchhoff)/3.0_dp
+    strain = (kirchhoff - mean)/(2.0_dp*shear) + mean/(3.0_dp*bulk)
+  end function hencky_strain
 
   !> Principal moduli d tau_i / d eps_j. Source: theory.md (7).
   pure function hencky_moduli(bulk, shear) result(d_kirchhoff_d_strain)

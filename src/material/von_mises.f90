@@ -6,7 +6,7 @@ module mpm_von_mises
   use mpm_material, only: bulk_modulus, material_t, shear_modulus, yield_stress_at
   implicit none
   private
-  public :: principal_state_t, return_radially
+  public :: compare_strength, principal_state_t, return_radially
 
   !> A point that was returned to the yield surface stays elastic at rest: without this margin
   !! rounding would decide, and the first tangent of an increment would depend on the compiler.
@@ -52,6 +52,20 @@ contains
     end if
     state%kirchhoff = hencky_stress(bulk, shear, state%strain_e)
   end subroutine return_radially
+
+  !> A stress against the strength without plastic strain. Source: theory.md 4.3.
+  pure subroutine compare_strength(outside, found, allowed, material, kirchhoff)
+    logical, intent(out)  :: outside       !! .true.: outside the yield surface
+    real(dp), intent(out) :: found         !! sqrt(3 J2) of the stress [force/length^2]
+    real(dp), intent(out) :: allowed       !! sqrt(3 J2) at first yield [force/length^2]
+    type(material_t), intent(in) :: material
+    real(dp), intent(in)  :: kirchhoff(3)  !! principal Kirchhoff stress [force/length^2]
+    real(dp) :: slope, segment_end
+
+    call yield_stress_at(material, 0.0_dp, allowed, slope, segment_end)
+    found = sqrt(1.5_dp)*norm2(deviator_of(kirchhoff))
+    outside = found > allowed*(1.0_dp + yield_tolerance)
+  end subroutine compare_strength
 
   !> Deviatoric part of three principal values, from differences so that no pressure enters.
   pure function deviator_of(principal) result(deviator)
