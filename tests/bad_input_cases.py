@@ -1547,9 +1547,6 @@ job.inp:17:16: error: both heights are 2: expected two different ones
 job.inp:22:1: error: no material points in the elements of 'HIGH': expected elements of the body
    22 | HIGH, 0, 0, 0
       | ^~~~
-job.inp:29:1: error: '4' touches no element with material points: expected nodes of the body
-   29 | 4, 1, 1
-      | ^
 """),
     ),
     Case(
