@@ -315,33 +315,30 @@ contains
         if (found > 0) node = mesh%node_set(found)%item
       end if
     end associate
-    if (.not. allocated(node)) then
-      allocate (node(0))
-    else if (any(state%filled(node)) .or. .not. any(state%filled)) then
-      return
-    else if (.not. is_in_list_of_body(state, deck%card(place%card), place)) then
-      call fault(context, deck, place, quoted(name)//" touches no element with material points: " &
-                 //"expected nodes of the body", code=exit_model)
-    end if
+    if (.not. allocated(node)) allocate (node(0))
+    if (size(node) == 0 .or. touches_body(state, deck%card(place%card), place, node)) return
+    call fault(context, deck, place, quoted(name)//" touches no element with material points: " &
+               //"expected nodes of the body", code=exit_model)
   end subroutine nodes_of_field
 
-  !> Whether a field of *BOUNDARY is the number of a node and another number in the same field of
-  !! that card is a node of the body: a background that is prescribed node by node.
-  pure logical function is_in_list_of_body(state, card, place) result(in_list)
+  !> Whether the nodes of a field hold material, or are one of a list of numbers in *BOUNDARY of
+  !! which another one does: a background that is prescribed node by node.
+  pure logical function touches_body(state, card, place, nodes) result(touches)
     type(boundary_state_t), intent(in) :: state !! labels, filled nodes
     type(deck_card_t), intent(in) :: card            !! card of the field
     type(place_t), intent(in) :: place          !! the field
+    integer, intent(in) :: nodes(:)             !! (n) nodes that it names
     integer :: i, node
 
-    in_list = .false.
-    if (card%keyword /= "BOUNDARY") return
+    touches = any(state%filled(nodes)) .or. .not. any(state%filled)
+    if (touches .or. card%keyword /= "BOUNDARY") return
     if (.not. field_is_integer(card%data(place%line), place%field)) return
     do i = 1, size(card%data)
       if (.not. field_is_integer(card%data(i), place%field)) cycle
       node = find_label(state%label, field_integer(card%data(i), place%field))
-      if (node > 0) in_list = state%filled(node)
-      if (in_list) return
+      if (node > 0) touches = state%filled(node)
+      if (touches) return
     end do
-  end function is_in_list_of_body
+  end function touches_body
 
 end module mpm_boundary_builder
