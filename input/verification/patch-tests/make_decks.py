@@ -5,7 +5,8 @@ Everything follows from the numbers in this file: run it again after a change (n
 
 import json
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -28,7 +29,8 @@ PER_ELEMENT = {2: 3, 3: 4}
 
 @dataclass(frozen=True)
 class Leg:
-    """A step of a deck: so many equal increments x = A x + d."""
+    """A step of a deck: so many equal increments x = A x + d; when the mesh goes with the
+    body, equal increments of the displacement up to x = A X."""
 
     name: str
     a: np.ndarray  # (3, 3)
@@ -49,6 +51,7 @@ class Family:
     holds_all: bool = True  # False: only nodes on the surface of the body are prescribed
     dimensions: tuple[int, ...] = (2, 3)
     plane_radii: tuple[float, ...] = ()  # in 2-D, if not the same
+    carries_mesh: bool = False  # one step; True: the mesh goes with the body
 
     def body(self, mesh: Mesh) -> list[int]:
         """Elements that are filled."""
@@ -93,10 +96,10 @@ def tension(n_dim: int, stretch: float, material: Material, is_first: bool) -> n
 def legs_of(name: str, n_dim: int, material: Material) -> list[Leg]:
     """The motion of a family."""
     solid = n_dim == 3
-    if name == "affine":
+    if name in ("affine", "carried"):
         plane = [[1.25, 0.35], [-0.2, 0.7]]
         space = [[0.8, 0.25, 0.1], [-0.2, 0.75, 0.15], [0.1, -0.25, 0.75]]
-        legs = [Leg("PULL", embedded(space if solid else plane))]
+        legs = [Leg("PULL", embedded(space if solid else plane), 1 if name == "affine" else 8)]
     elif name == "crossing":
         plane = [[1.3, 0.1], [0.1, 0.85]]
         space = [[1.25, 0.1, 0.0], [0.1, 0.9, 0.05], [0.0, 0.05, 0.85]]
@@ -165,6 +168,17 @@ FAMILIES = [
     Family("shear", "Simple shear", **BLOCK, materials={"elastic": ELASTIC, "plastic": PERFECT},
            formulations=TWO),
 ]  # fmt: skip
+FAMILIES.append(
+    replace(
+        FAMILIES[0],
+        name="carried",
+        title="The same in 8 increments, the mesh goes with the body",
+        radii=(9.0, 9.0, 9.0),  # everything
+        plane_radii=(),
+        materials={"plastic": PERFECT},
+        carries_mesh=True,
+    )
+)
 TURNING_STEPS = (10, 20, 40, 80)
 TURNING = [
     Family(f"turning-{n}", f"Simple shear in {n} increments, soft material", **BLOCK,
@@ -173,13 +187,23 @@ TURNING = [
 ]  # fmt: skip
 
 
-def exact_states(legs: list[Leg], material: Material) -> dict[str, dict[str, list[float]]]:
+def increments(leg: Leg, carries_mesh: bool) -> list[np.ndarray]:
+    """The deformation gradients of the increments of a step."""
+    if not carries_mesh:
+        return [leg.a] * leg.n
+    parts = [np.eye(3) + i / leg.n * (leg.a - np.eye(3)) for i in range(leg.n + 1)]
+    return [after @ np.linalg.inv(before) for before, after in pairwise(parts)]
+
+
+def exact_states(
+    legs: list[Leg], material: Material, carries_mesh: bool
+) -> dict[str, dict[str, list[float]]]:
     """The fields at the end of every step, by total time."""
     body = Body(material)
     states = {}
     for i, leg in enumerate(legs):
-        for _ in range(leg.n):
-            body.move(leg.a, leg.d)
+        for a in increments(leg, carries_mesh):
+            body.move(a, leg.d)
         states[f"{i + 1}"] = body.fields()
     return states
 
@@ -209,7 +233,8 @@ def write_motions(family: Family, mesh: Mesh, nodes: list[int], legs: list[Leg])
     x[:, : mesh.n_dim] = mesh.x
     totals = np.zeros_like(x)
     for leg in legs:
-        totals = totals + leg.n * (x @ (leg.a - np.eye(3)).T + leg.d)
+        n = 1 if family.carries_mesh else leg.n
+        totals = totals + n * (x @ (leg.a - np.eye(3)).T + leg.d)
         names.append(f"{family.name}-{mesh.n_dim}d{order}-{leg.name.lower()}.inc")
         (HERE / names[-1]).write_text(motion_text(moving, nodes, totals))
     return names
@@ -228,6 +253,8 @@ def model_text(family: Family, mesh: Mesh, formulation: str, material: Material)
         formulation, f"METIS, SIZE={4 if mesh.n_dim == 2 else 8}"
     )
     text += f"*FORMULATION, TYPE={kind}\n*PATCH, SOURCE={source}\n" + material.card()
+    if family.carries_mesh:
+        text += "*MOVING MESH, TYPE=LAGRANGIAN\n"
     text += "*MATERIAL POINTS, ELSET=BODY, MATERIAL=BLOCK, PER ELEMENT="
     return text + f"{PER_ELEMENT[mesh.n_dim]}\n"
 
@@ -275,7 +302,7 @@ def write_decks(family: Family, n_dim: int, exact: dict) -> None:
         for word, material in family.materials.items():
             legs = legs_of(family.name, n_dim, material)
             motions = write_motions(family, mesh, nodes, legs)
-            states = exact_states(legs, material)
+            states = exact_states(legs, material, family.carries_mesh)
             scale = max(abs(v) for fields in states.values() for v in fields["TAU"])
             job = f"{family.name}-{n_dim}d-{formulation}-{word}"
             exact[job] = states
