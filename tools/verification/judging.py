@@ -36,15 +36,17 @@ class Row:
 
     @property
     def error(self) -> float | None:
-        """Found less exact, over the exact value unless it is 0."""
-        return None if self.exact is None else relative(self.found - self.exact, self.exact)
+        """Found less exact, over the exact value unless it is 0: positive when too large."""
+        if self.exact is None:
+            return None
+        return (self.found - self.exact) / (self.exact or 1.0)
 
     @property
     def error_limit(self) -> float | None:
         """The tolerance, relative where the error is."""
         if self.exact is None or self.tolerance is None:
             return None
-        return relative(self.tolerance, self.exact)
+        return self.tolerance / (abs(self.exact) or 1.0)
 
 
 @dataclass(frozen=True)
@@ -77,11 +79,6 @@ class CaseResult:
         """Number of things that are not as they should be."""
         n_rows = sum(row.failed for row in self.rows)
         return n_rows + sum(study.failed for study in self.studies) + len(self.problems)
-
-
-def relative(value: float, reference: float) -> float:
-    """A value over the size of another one, as it is when that is 0."""
-    return value / abs(reference) if reference != 0.0 else value
 
 
 def judge(
