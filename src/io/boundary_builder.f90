@@ -3,8 +3,8 @@ module mpm_boundary_builder
   use mpm_amplitude, only: amplitude_t, amplitude_value
   use mpm_build_context, only: at_field, at_parameter, build_context_t, fault, &
     & is_amplitude, name_hint, place_t, require_node_set, use_name
-  use mpm_deck_card, only: deck_card_t, deck_t, field_count, field_integer, field_is_integer, &
-    & field_real, field_text, has_parameter, parameter_choice, parameter_text
+  use mpm_deck_card, only: deck_card_t, deck_line_t, deck_t, field_count, field_integer, &
+    & field_is_integer, field_real, field_text, has_parameter, parameter_choice, parameter_text
   use mpm_diagnostics, only: quoted
   use mpm_dof_map, only: constraint_t
   use mpm_error, only: exit_model
@@ -325,20 +325,31 @@ contains
   !! which another one does: a background that is prescribed node by node.
   pure logical function touches_body(state, card, place, nodes) result(touches)
     type(boundary_state_t), intent(in) :: state !! labels, filled nodes
-    type(deck_card_t), intent(in) :: card            !! card of the field
+    type(deck_card_t), intent(in) :: card       !! card of the field
     type(place_t), intent(in) :: place          !! the field
     integer, intent(in) :: nodes(:)             !! (n) nodes that it names
-    integer :: i, node
+    integer :: i
 
     touches = any(state%filled(nodes)) .or. .not. any(state%filled)
     if (touches .or. card%keyword /= "BOUNDARY") return
     if (.not. field_is_integer(card%data(place%line), place%field)) return
     do i = 1, size(card%data)
-      if (.not. field_is_integer(card%data(i), place%field)) cycle
-      node = find_label(state%label, field_integer(card%data(i), place%field))
-      if (node > 0) touches = state%filled(node)
+      touches = is_filled_node(state, card%data(i), place%field)
       if (touches) return
     end do
   end function touches_body
+
+  !> Whether a field is the number of a node that holds material.
+  pure logical function is_filled_node(state, line, field) result(filled)
+    type(boundary_state_t), intent(in) :: state !! labels, filled nodes
+    type(deck_line_t), intent(in) :: line       !! data line
+    integer, intent(in) :: field                !! its field
+    integer :: node
+
+    filled = .false.
+    if (.not. field_is_integer(line, field)) return
+    node = find_label(state%label, field_integer(line, field))
+    if (node > 0) filled = state%filled(node)
+  end function is_filled_node
 
 end module mpm_boundary_builder

@@ -47,14 +47,14 @@ contains
   end subroutine collect_expectations
 
   !> Whether a deck has an expectation about a quantity.
-  pure logical function is_expected(verdicts, quantity)
+  pure logical function is_expected(verdicts, quantity) result(expected)
     type(verdict_t), intent(in) :: verdicts(:) !! of the run
     character(*), intent(in) :: quantity       !! deck name, upper case
     integer :: i
 
-    is_expected = .false.
+    expected = .false.
     do i = 1, size(verdicts)
-      is_expected = is_expected .or. verdicts(i)%expected%quantity == quantity
+      expected = expected .or. verdicts(i)%expected%quantity == quantity
     end do
   end function is_expected
 

@@ -106,8 +106,9 @@ contains
     real(dp), allocatable :: values(:)
     logical :: due
 
-    if (model%locking_meter .and. state%step > 0) &
+    if (model%locking_meter .and. state%step > 0) then
       call log_message(output%log, locking_text(state), error)
+    end if
     if (allocated(error)) return
     allocate (values(size(output%column)))
     values(:) = history_values(output%column, points, model%patches, state)
