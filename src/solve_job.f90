@@ -8,6 +8,7 @@ module mpm_solve_job
     make_error
   use mpm_external_force, only: check_applied, external_force, prepare_loads
   use mpm_geostatic_step, only: report_move
+  use mpm_ghost_penalty, only: build_ghost, ghost_share
   use mpm_increments, only: accept_step, begin_step, cut_back, schedule_t, start_increment
   use mpm_kinds, only: dp, ip
   use mpm_linear_solver, only: analyse, solver_memory, solver_ok
@@ -102,7 +103,7 @@ contains
         call prepare_increment(system, body, model, schedule, error) ! unknowns, pattern, loads
         if (allocated(error)) return
         call find_equilibrium(system, report, body, model%step(schedule%step)%newton)
-        call note_attempt(state, schedule, report, system)
+        call note_attempt(state, schedule, report, system, body)
         if (report%outcome == outcome_converged) call note_equilibrium(state, system, body, model)
         call write_attempt(output, state, report, error)
         if (allocated(error)) return
@@ -142,6 +143,7 @@ contains
     body%points = model%points
     body%surface = model%surface
     body%material = model%material
+    body%ghost_gamma = model%ghost_gamma
     select case (model%formulation)
     case (formulation_fbar)
       body%patches = model%patches
@@ -190,9 +192,11 @@ contains
       call check_applied(error, system%f_ext, step%load, system%dofs, body%mesh, body%surface)
     end associate
     if (allocated(error)) return
-    if (pattern_is_current(system%map, system%active, system%dofs)) return
+    call build_ghost(system%ghost, body%ghost_gamma, body%mesh, body%points, body%material, &
+                     system%active)
+    if (pattern_is_current(system%map, system%active, system%dofs, system%ghost%node)) return
     call build_pattern(system%tangent, system%map, body%patches, body%mesh, system%dofs, &
-                       system%active)
+                       system%active, system%ghost%node)
     call analyse(system%solver, system%tangent, outcome)
     if (outcome == solver_memory) then
       call make_error(error, exit_solver, "error: not enough memory for the analysis of the "// &
@@ -246,11 +250,12 @@ contains
   end function worst_of
 
   !> What an attempt was.
-  subroutine note_attempt(state, schedule, report, system)
+  subroutine note_attempt(state, schedule, report, system, body)
     type(run_state_t), intent(inout)  :: state
     type(schedule_t), intent(in)      :: schedule
     type(newton_report_t), intent(in) :: report
     type(system_t), intent(in)        :: system
+    type(body_t), intent(in)          :: body
 
     state%step = schedule%step
     state%increment = schedule%increment
@@ -261,6 +266,8 @@ contains
     state%n_iterations = report%n_iterations
     state%residual = report%residual(report%n_iterations)
     state%n_active_elements = size(system%element)
+    state%eigenvalue = [report%eigenvalues%smallest, report%eigenvalues%largest]
+    if (body%ghost_gamma > 0.0_dp) state%n_ghost_pairs = system%ghost%pairs%n
     state%wall_seconds = wall_time() - state%started
   end subroutine note_attempt
 
@@ -280,6 +287,8 @@ contains
     type(body_t), intent(in)         :: body
     type(model_t), intent(in)        :: model
 
+    state%ghost_share_now = ghost_share(system%ghost, system%u, system%f_int)
+    state%ghost_share = max(state%ghost_share, state%ghost_share_now)
     state%applied = system%f_ext
     state%reaction = part_along(model%frames, system%f_int - system%f_ext, system%dofs%fixed)
     state%delta_u = system%u

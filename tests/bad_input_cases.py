@@ -1746,6 +1746,45 @@ job.inp:27:44: error: PEEQ is a number without components: expected no COMPONENT
 """),
     ),
     Case(
+        "ghost_share_without_penalty",
+        PLANE,
+        [("QUANTITY=U, SET=Y1, COMPONENT=2", "QUANTITY=GHOST SHARE")],
+        2,
+        text("""
+job.inp:27:19: error: GHOST SHARE without *GHOST PENALTY: expected *GHOST PENALTY in the model part
+   27 | *EXPECT, QUANTITY=GHOST SHARE
+      |                   ^~~~~~~~~~~
+"""),
+    ),
+    Case(
+        "ghost_share_of_a_set",
+        PLANE,
+        [
+            ("*MATERIAL, NAME", "*GHOST PENALTY\n*MATERIAL, NAME"),
+            ("QUANTITY=U, SET=Y1, COMPONENT=2", "QUANTITY=GHOST SHARE, SET=ALL, STATISTIC=MAX"),
+        ],
+        2,
+        text("""
+job.inp:28:36: error: GHOST SHARE is one number of the run: expected no SET
+   28 | *EXPECT, QUANTITY=GHOST SHARE, SET=ALL, STATISTIC=MAX
+      |                                    ^~~
+job.inp:28:51: error: GHOST SHARE is one number of the run: expected no STATISTIC
+   28 | *EXPECT, QUANTITY=GHOST SHARE, SET=ALL, STATISTIC=MAX
+      |                                                   ^~~
+"""),
+    ),
+    Case(
+        "ghost_penalty_twice",
+        PLANE,
+        [("*MATERIAL, NAME", "*GHOST PENALTY\n*GHOST PENALTY, GAMMA=1\n*MATERIAL, NAME")],
+        2,
+        text("""
+job.inp:9:1: error: duplicate *GHOST PENALTY, first in line 8: expected one in a deck
+    9 | *GHOST PENALTY, GAMMA=1
+      | ^~~~~~~~~~~~~~
+"""),
+    ),
+    Case(
         "expect_component_beyond",
         PLANE,
         [("COMPONENT=2", "COMPONENT=3")],

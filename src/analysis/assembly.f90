@@ -10,7 +10,7 @@ module mpm_assembly
   use mpm_tensor, only: tensor_from_voigt
   implicit none
   private
-  public :: apply_tangent, assemble_tangent, internal_force
+  public :: apply_tangent, assemble_tangent, internal_force, scatter_block
 
   integer, parameter :: voigt_index(3, 3) = reshape([1, 4, 6, 4, 2, 5, 6, 5, 3], [3, 3])
     !! Voigt component of a tensor index pair
@@ -65,16 +65,16 @@ contains
     !$omp end parallel
   end subroutine assemble_tangent
 
-  !> Adds a patch block to the values of the tangent, through the positions of the map.
-  pure subroutine scatter_block(val, map, patch, block)
+  !> Adds a block to the values of the tangent, through the positions of the map.
+  pure subroutine scatter_block(val, map, number, block)
     real(dp), intent(inout) :: val(0:)           !! values of the tangent
     type(assembly_map_t), intent(in) :: map
-    integer, intent(in)     :: patch
+    integer, intent(in)     :: number            !! of the block in the map
     real(dp), intent(in)    :: block(:, :)       !! (n_eq, n_eq)
     integer(ip) :: k, position
     integer :: i, j
 
-    k = map%position_first(patch)
+    k = map%position_first(number)
     do j = 1, size(block, 2)
       do i = 1, size(block, 1)
         position = map%position(k)

@@ -2,6 +2,8 @@
 module mpm_equilibrium
   use mpm_assembly, only: apply_tangent, assemble_tangent
   use mpm_dof_map, only: add_solution, gather_free
+  use mpm_eigenvalues, only: eigenvalues_t, find_eigenvalues
+  use mpm_ghost_penalty, only: add_ghost_force, add_ghost_tangent
   use mpm_kinds, only: dp
   use mpm_linear_solver, only: factorize, solve, solver_memory, solver_ok
   use mpm_nodal_frames, only: in_local_axes, part_along
@@ -26,6 +28,7 @@ module mpm_equilibrium
     real(dp) :: tolerance = 1.0e-9_dp !! residual over external force and reactions [-]
     integer  :: max_iterations = 20   !! corrections in one increment
     integer  :: max_backtracks = 8    !! halvings of one correction
+    logical  :: eigenvalues = .false. !! look for extreme eigenvalues of the tangent in the end
   end type newton_settings_t
 
   !> What Newton's method did in one attempt at an increment.
@@ -40,6 +43,7 @@ module mpm_equilibrium
     integer :: worst_point = 0             !! failed point, 0 if none
     integer :: n_plastic = 0               !! points that flowed in the last evaluation
     integer, allocatable :: flowing(:)     !! (0:n_iterations)  points that flow
+    type(eigenvalues_t) :: eigenvalues     !! of the last tangent, if they were asked for
   end type newton_report_t
 
   !> The state of Newton's method between two corrections.
@@ -75,6 +79,9 @@ contains
       if (report%residual(iteration) <= settings%tolerance) exit
       if (iteration == settings%max_iterations) report%outcome = outcome_iterations
     end do
+    if (report%outcome == outcome_converged .and. settings%eigenvalues) then
+      call find_eigenvalues(report%eigenvalues, system%solver, system%tangent)
+    end if
     call find_worst_node(report, system)
     call close_report(report)
   end subroutine find_equilibrium
@@ -93,12 +100,15 @@ contains
     report%n_iterations = iteration
     call cpu_time(clock(1))
     call assemble_tangent(system%tangent, system%map, body%mesh, body%patches, system%kinematics, system%sums)
+    call add_ghost_tangent(system%tangent, system%map, system%ghost)
     newton%stiffness = maxval(abs(system%tangent%val))
     rhs = newton%residual
     if (iteration == 1) then
       allocate (force, mold=system%u)
       call apply_tangent(force, system%dofs%prescribed, system%map, body%mesh, body%patches, &
                          system%kinematics, system%sums)
+      ! The penalty is linear: its force at a displacement is its stiffness times it.
+      call add_ghost_force(force, system%ghost, system%dofs%prescribed)
       call gather_free(system%dofs, force, newton%x)
       rhs = rhs - newton%x
     end if

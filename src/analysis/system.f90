@@ -5,6 +5,7 @@ module mpm_system
   use mpm_csc_matrix, only: csc_matrix_t
   use mpm_dof_map, only: dof_map_t
   use mpm_fbar, only: project_onto_patches
+  use mpm_ghost_penalty, only: add_ghost_force, ghost_penalty_t, open_ghost
   use mpm_kinds, only: dp
   use mpm_kinematics, only: allocate_kinematics, compute_kinematics, kinematics_t
   use mpm_linear_solver, only: free_solver, linear_solver_t
@@ -30,6 +31,7 @@ module mpm_system
     type(points_t)  :: points                   !! converged
     type(surface_points_t) :: surface           !! carry tractions with the body
     type(material_t), allocatable :: material(:)
+    real(dp) :: ghost_gamma = 0.0_dp            !! factor of the ghost penalty [-], 0 = none
   end type body_t
 
   !> Work space of an increment. It holds foreign handles: release it with `free_system`.
@@ -37,12 +39,13 @@ module mpm_system
     logical, allocatable  :: active(:)      !! (n_el)           hosts a point
     integer, allocatable  :: element(:)     !! (n_active)       active elements, ascending
     real(dp), allocatable :: u(:, :)        !! (n_dim, n_node)  displacement of the increment [length]
-    real(dp), allocatable :: f_int(:, :)    !! (n_dim, n_node)  internal force [force]
+    real(dp), allocatable :: f_int(:, :)    !! (n_dim, n_node)  internal force and penalty [force]
     real(dp), allocatable :: f_ext(:, :)    !! (n_dim, n_node)  applied force [force]
     type(dof_map_t)       :: dofs
     type(kinematics_t)    :: kinematics
     type(element_sums_t)  :: sums
     type(point_state_t)   :: trial
+    type(ghost_penalty_t) :: ghost          !! faces of this active set
     type(assembly_map_t)  :: map
     type(csc_matrix_t)    :: tangent
     type(linear_solver_t) :: solver
@@ -65,6 +68,7 @@ contains
     allocate (system%f_ext, source=system%u)
     call allocate_kinematics(system%kinematics, body%mesh)
     call allocate_sums(system%sums, body%mesh%n_el)
+    call open_ghost(system%ghost, body%mesh%n_dim)
     system%trial = body%points%state
   end subroutine open_system
 
@@ -110,6 +114,7 @@ contains
       return
     end if
     call internal_force(system%f_int, body%mesh, system%kinematics, system%sums, system%element)
+    call add_ghost_force(system%f_int, system%ghost, system%u)
     call cpu_time(clock(3))
     system%seconds = system%seconds + (clock(2:3) - clock(1:2))
   end subroutine evaluate

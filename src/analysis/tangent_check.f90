@@ -1,11 +1,13 @@
 !> The assembled tangent against central differences of the internal force.
 !!
-!! The tangent is a sum over patches. Torn apart, so that every patch has nodes of its own, the
-!! patches do not feel each other: one evaluation differentiates a column of all of them at once.
+!! The tangent is a sum over patches and pairs of the ghost penalty. Torn apart, so that each of
+!! these blocks has nodes of its own, they do not feel each other: one evaluation differentiates a
+!! column of all of them at once.
 module mpm_tangent_check
   use mpm_assembly, only: assemble_tangent
   use mpm_csc_matrix, only: add_block, csc_matrix_t, zero_values
   use mpm_dof_map, only: add_solution
+  use mpm_ghost_penalty, only: add_ghost_tangent
   use mpm_kinds, only: dp
   use mpm_material, only: law_von_mises
   use mpm_nodal_frames, only: in_global_axes, in_local_axes, nodal_frames_t
@@ -30,7 +32,7 @@ module mpm_tangent_check
 contains
 
   !> Compares at a random displacement of the unknowns that brings many points to yield.
-  !! Source: theory.md (13), (14).
+  !! Source: theory.md (13), (14), (18).
   subroutine check_tangent(report, system, body)
     type(tangent_report_t), intent(out) :: report
     type(system_t), intent(inout) :: system !! dofs and pattern are set; u is overwritten
@@ -49,6 +51,7 @@ contains
     if (.not. report%evaluated) return
     report%n_plastic = system%sums%n_plastic
     call assemble_tangent(system%tangent, system%map, body%mesh, body%patches, system%kinematics, system%sums)
+    call add_ghost_tangent(system%tangent, system%map, system%ghost)
     difference = system%tangent
     call difference_tangent(difference, skipped, system, body, step_ratio*largest)
     call compare_tangents(report, system%tangent, difference, skipped)
@@ -90,7 +93,7 @@ contains
     end do
   end function noise
 
-  !> Central differences of all patches into a matrix, entry by entry through its own search.
+  !> Central differences of all blocks into a matrix, entry by entry through its own search.
   subroutine difference_tangent(difference, skipped, system, body, delta)
     type(csc_matrix_t), intent(inout) :: difference !! pattern of the tangent
     logical, allocatable, intent(out) :: skipped(:) !! (n)  columns that cannot be compared
@@ -102,37 +105,38 @@ contains
     real(dp), allocatable :: block(:, :), column(:, :)
     integer, allocatable :: equation(:)
     logical, allocatable :: crossed(:, :)
-    integer :: patch, first, last, n_columns, k
+    integer :: number, first, last, n_columns, k
 
     call tear(torn, torn_system, system, body)
-    n_columns = body%mesh%n_dim*maxval(system%map%node_first(2:) - system%map%node_first(:system%map%n_patch))
+    n_columns = body%mesh%n_dim*maxval(system%map%node_first(2:) &
+                                       - system%map%node_first(:system%map%n_block))
     allocate (column(size(torn_system%u), n_columns))
-    allocate (crossed(system%map%n_patch, n_columns))
+    allocate (crossed(system%map%n_block, n_columns))
     do k = 1, n_columns
       call difference_column(column(:, k), crossed(:, k), k, delta, torn, torn_system, system)
     end do
     call zero_values(difference)
     allocate (skipped(difference%n), source=.false.)
-    do patch = 1, system%map%n_patch
-      first = system%map%node_first(patch)
-      last = system%map%node_first(patch + 1) - 1
+    do number = 1, system%map%n_block
+      first = system%map%node_first(number)
+      last = system%map%node_first(number + 1) - 1
       if (last < first) cycle
       equation = reshape(system%dofs%id(:, system%map%node(first:last)), [body%mesh%n_dim*(last - first + 1)])
       block = column((first - 1)*body%mesh%n_dim + 1:last*body%mesh%n_dim, :size(equation))
       call add_block(difference, equation, block)
       do k = 1, size(equation)
-        if (crossed(patch, k) .and. equation(k) > 0) skipped(equation(k)) = .true.
+        if (crossed(number, k) .and. equation(k) > 0) skipped(equation(k)) = .true.
       end do
     end do
   end subroutine difference_tangent
 
-  !> A copy of the body in which every patch has its own nodes.
+  !> A copy of the body in which every patch and every pair of the penalty has its own nodes.
   subroutine tear(torn, torn_system, system, body)
     type(body_t), intent(out)   :: torn
     type(system_t), intent(out) :: torn_system !! at the displacement of system
     type(system_t), intent(in)  :: system
     type(body_t), intent(in)    :: body
-    integer :: e
+    integer :: a, e
 
     torn = body
     torn%mesh%n_node = size(system%map%node)
@@ -142,6 +146,10 @@ contains
                                  + system%map%element_local(:, e))
     end do
     call open_system(torn_system, torn)
+    torn_system%ghost = system%ghost
+    associate (first => system%map%node_first(system%map%n_patch + 1))
+      torn_system%ghost%node%item = [(a, a=first, size(system%map%node))]
+    end associate
     torn_system%active = system%active
     torn_system%element = system%element
     torn_system%u = system%u(:, system%map%node)
@@ -151,12 +159,12 @@ contains
     end if
   end subroutine tear
 
-  !> Derivative of the forces of every patch with respect to its local displacement k,
+  !> Derivative of the forces of every block with respect to its local displacement k,
   !! both along the axes of the nodes.
   subroutine difference_column(column, crossed, k, delta, torn, torn_system, system)
     real(dp), intent(out) :: column(:)  !! (n_dim times torn nodes)
-    logical, intent(out)  :: crossed(:) !! (n_patch)  a point began or ceased to flow
-    integer, intent(in)   :: k          !! local displacement of all patches
+    logical, intent(out)  :: crossed(:) !! (n_block)  a point began or ceased to flow
+    integer, intent(in)   :: k          !! local displacement of all blocks
     real(dp), intent(in)  :: delta      !! [length]
     type(body_t), intent(in)      :: torn
     type(system_t), intent(inout) :: torn_system
@@ -189,22 +197,22 @@ contains
     torn_system%u = u
   end subroutine difference_column
 
-  !> Moves local displacement k of every patch that has one.
+  !> Moves local displacement k of every block that has one.
   pure subroutine shift(u, frames, node_first, k, delta)
     real(dp), intent(inout) :: u(:, :)       !! (n_dim, torn nodes)
     type(nodal_frames_t), intent(in) :: frames !! axes of the torn nodes
-    integer, intent(in)     :: node_first(:) !! (n_patch+1)
+    integer, intent(in)     :: node_first(:) !! (n_block+1)
     integer, intent(in)     :: k             !! local displacement
     real(dp), intent(in)    :: delta         !! [length]
     real(dp) :: local(size(u, 1))
-    integer :: patch, a
+    integer :: number, a
 
     a = (k - 1)/size(u, 1)
     local = 0.0_dp
     local(k - a*size(u, 1)) = delta
-    do patch = 1, size(node_first) - 1
-      associate (node => node_first(patch) + a)
-        if (node >= node_first(patch + 1)) cycle
+    do number = 1, size(node_first) - 1
+      associate (node => node_first(number) + a)
+        if (node >= node_first(number + 1)) cycle
         u(:, node) = u(:, node) + in_global_axes(frames, node, local)
       end associate
     end do

@@ -9,7 +9,7 @@ module mpm_deck_schema
   private
   public :: build_schema, find_keyword, keyword_hint, is_later_keyword
 
-  character(18), parameter :: later_keyword(2) = [character(18) :: "GHOST PENALTY", "RESTART"]
+  character(18), parameter :: later_keyword(1) = [character(18) :: "RESTART"]
 
 contains
 

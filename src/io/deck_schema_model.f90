@@ -20,6 +20,7 @@ contains
     call add_motion_and_loss(schema)
     call add_keyword(schema, "LOCKING METER", "method", in_model, once_in_deck, &
                      "Writes into the log after every increment how far the mesh is from locking.")
+    call add_ghost_penalty(schema)
     call add_material(schema)
     call add_plastic(schema)
     call add_amplitude(schema)
@@ -83,6 +84,17 @@ contains
                                             range=">= 0", default="0.1", &
                                             meaning="distance over element size that is no loss"))
   end subroutine add_motion_and_loss
+
+  !> *GHOST PENALTY.
+  pure subroutine add_ghost_penalty(schema)
+    type(schema_t), intent(inout) :: schema !! gets the keyword
+
+    call add_keyword(schema, "GHOST PENALTY", "method", in_model, once_in_deck, &
+                     "Holds the displacement gradients of elements at the edge of the body "// &
+                     "together.")
+    call add_parameter(schema, value_rule_t("GAMMA", value_real, required=.false., range="> 0", &
+                                            default="5e-4", meaning="factor of the penalty"))
+  end subroutine add_ghost_penalty
 
   !> *MATERIAL, *DENSITY and *ELASTIC.
   pure subroutine add_material(schema)

@@ -81,6 +81,8 @@ contains
     call add_parameter(schema, value_rule_t("MAX BACKTRACKS", value_integer, required=.false., &
                                             range=">= 0", default="8", &
                                             meaning="halvings of one correction"))
+    call add_parameter(schema, value_rule_t("EIGENVALUES", value_flag, required=.false., &
+                                            meaning="eigenvalues of the tangent in the log"))
   end subroutine add_controls
 
   !> *BOUNDARY.
@@ -216,7 +218,7 @@ contains
     call add_keyword(schema, "EXPECT", "proof", in_step, once_never, &
                      "A value that the run must reach; a miss ends it with exit code 7.")
     call add_parameter(schema, value_rule_t("QUANTITY", value_choice, &
-                                            choices="RF|U|S|TAU|LE|PEEQ|F|J|JBAR|VOL|CHECKERBOARD", &
+      choices="RF|U|S|TAU|LE|PEEQ|F|J|JBAR|VOL|CHECKERBOARD|GHOST SHARE", &
                                             meaning="quantity"))
     call add_parameter(schema, value_rule_t("SET", value_name, required=.false., &
                                             meaning="node or element set; without: all points"))

@@ -35,11 +35,12 @@ contains
       call check_time(new, deck, context, time)
       call check_component(new, model, deck, context)
       new%set = parameter_text(card, "SET", "")
-      if (new%quantity == "CHECKERBOARD") then
-        call check_scalar(new, deck, context)
-      else
+      select case (new%quantity)
+      case ("CHECKERBOARD", "GHOST SHARE")
+        call check_scalar(new, model, deck, context)
+      case default
         call find_items(new, model, deck, context)
-      end if
+      end select
       do j = 1, size(card%data)
         associate (line => card%data(j))
           new%analytic = to_upper(field_text(line, 1)) == "ANALYTIC"
@@ -102,8 +103,9 @@ contains
   end subroutine check_component
 
   !> One number of the run takes neither set nor statistic.
-  subroutine check_scalar(new, deck, context)
+  subroutine check_scalar(new, model, deck, context)
     type(expectation_t), intent(in) :: new          !! with quantity
+    type(model_t), intent(in) :: model              !! with the penalty
     type(deck_t), intent(in) :: deck                !! the deck
     type(build_context_t), intent(inout) :: context !! takes errors
     character(9), parameter :: parameter_name(2) = [character(9) :: "SET", "STATISTIC"]
@@ -114,6 +116,9 @@ contains
       call fault(context, deck, at_parameter(new%card, trim(parameter_name(i))), new%quantity &
                  //" is one number of the run: expected no "//trim(parameter_name(i)))
     end do
+    if (new%quantity /= "GHOST SHARE" .or. model%ghost_gamma > 0.0_dp) return
+    call fault(context, deck, at_parameter(new%card, "QUANTITY"), "GHOST SHARE without " &
+               //"*GHOST PENALTY: expected *GHOST PENALTY in the model part")
   end subroutine check_scalar
 
   !> Nodes of a node set for RF and U, else elements of an element set; all points without a set.

@@ -13,6 +13,7 @@ module mpm_expectations
   public :: verdict_t, collect_expectations, evaluate_expectations, expectation_times
   public :: is_expected, n_failed_expectations, verdict_line
 
+  character(*), parameter :: quantity_share = "GHOST SHARE" !! a number of the run
   real(dp), parameter :: time_tolerance = 1.0e-9_dp !! relative
 
   !> An expectation and what became of it.
@@ -111,6 +112,8 @@ contains
 
     if (expected%quantity == "CHECKERBOARD") then
       value = state%checkerboard
+    else if (expected%quantity == quantity_share) then
+      value = state%ghost_share
     else if (is_nodal(expected)) then
       value = statistic_of(nodal_values(state, expected%quantity, max(1, expected%component), &
                                         expected%item), expected%statistic)
@@ -223,7 +226,7 @@ contains
     character(:), allocatable :: text
 
     text = expected%quantity
-    if (text == "CHECKERBOARD") return
+    if (text == "CHECKERBOARD" .or. text == quantity_share) return
     text = expected%statistic//" "//text
     if (expected%component > 0) text = text//integer_text(expected%component)
     if (allocated(expected%set)) then

@@ -30,7 +30,8 @@ contains
     text = text//line_end//"  mesh: "//motion_text(model%motion)
     text = text//line_end//"  axes of nodes: "//axes_text(model)
     text = text//line_end//"  lost points: "//lost_action_text(model%location%lost_action) &
-           //", tolerance "//real_text(model%location%tolerance)//line_end
+           //", tolerance "//real_text(model%location%tolerance)//line_end &
+           //"  ghost penalty: "//ghost_text(model%ghost_gamma)//line_end
     if (model%locking_meter) text = text//"  locking meter: the continuum has " &
       & //integer_text(model%mesh%n_dim)//" unknowns per volumetric constraint"//line_end
     do i = 1, size(model%material)
@@ -66,6 +67,15 @@ contains
     if (allocated(model%frames%of_node)) text = integer_text(count(model%frames%of_node > 0)) &
       & //" nodes rotated, the rest global"
   end function axes_text
+
+  !> The factor of the ghost penalty.
+  pure function ghost_text(gamma) result(text)
+    real(dp), intent(in) :: gamma !! [-], 0 = none
+    character(:), allocatable :: text
+
+    text = "none"
+    if (gamma > 0.0_dp) text = "gamma "//real_text(gamma)
+  end function ghost_text
 
   !> One material.
   pure function material_text(material) result(text)

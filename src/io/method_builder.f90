@@ -6,6 +6,7 @@ module mpm_method_builder
     & parameter_real, parameter_reals, parameter_text
   use mpm_diagnostics, only: quoted
   use mpm_error, only: error_t
+  use mpm_ghost_penalty, only: default_gamma
   use mpm_kinds, only: dp
   use mpm_material_points, only: generate_points
   use mpm_mesh_motion, only: check_motion
@@ -45,6 +46,8 @@ contains
         call build_location(model, deck, i)
       case ("LOCKING METER")
         model%locking_meter = .true.
+      case ("GHOST PENALTY")
+        model%ghost_gamma = parameter_real(deck%card(i), "GAMMA", default_gamma)
       case default
         cycle
       end select

@@ -95,6 +95,7 @@ module mpm_model
     type(nodal_frames_t)      :: frames       !! axes of the nodes
     type(location_settings_t) :: location
     logical                   :: locking_meter = .false. !! lines of the meter in the log
+    real(dp)                  :: ghost_gamma = 0.0_dp !! factor of *GHOST PENALTY, 0 = none
     type(amplitude_t), allocatable :: amplitude(:)
     type(step_t), allocatable :: step(:)
   end type model_t

@@ -89,7 +89,32 @@ contains
     text = text//line_end//"  "//outcome_text(report%outcome)//" after " &
            //integer_text(report%n_iterations)//" iterations"
     if (report%outcome /= outcome_converged) text = text//worst_text(report)
+    text = text//eigenvalues_text(report)
+    if (state%n_ghost_pairs >= 0) text = text//line_end//ghost_text(state, report)
   end function attempt_text
+
+  !> Pairs of the ghost penalty, and what it carries in an increment that converged.
+  pure function ghost_text(state, report) result(text)
+    type(run_state_t), intent(in)  :: state     !! pairs and share
+    type(newton_report_t), intent(in) :: report !! of the attempt
+    character(:), allocatable :: text
+
+    text = "  ghost penalty: "//integer_text(state%n_ghost_pairs)//" pairs"
+    if (report%outcome /= outcome_converged) return
+    text = text//", share of the load "//real_text(state%ghost_share_now)
+  end function ghost_text
+
+  !> Extreme eigenvalues of the tangent, when they were asked for.
+  pure function eigenvalues_text(report) result(text)
+    type(newton_report_t), intent(in) :: report !! of the attempt
+    character(:), allocatable :: text
+
+    text = ""
+    if (.not. report%eigenvalues%found) return
+    text = line_end//"  eigenvalues of the tangent: smallest " &
+           //real_text(report%eigenvalues%smallest)//", largest " &
+           //real_text(report%eigenvalues%largest)
+  end function eigenvalues_text
 
   !> One iteration of Newton's method.
   pure function iteration_text(report, i) result(text)
@@ -156,11 +181,22 @@ contains
            //integer_text(state%increment_total)//" accepted of "//integer_text(log%n_attempts) &
            //" attempts, "//integer_text(log%n_iterations)//" iterations"//line_end &
            //"lost points: "//integer_text(state%n_lost)//", extrapolated " &
-           //integer_text(state%n_extrapolated)//line_end//seconds_text(log, total_cpu) &
+           //integer_text(state%n_extrapolated)//line_end//largest_share_text(state) &
+           //seconds_text(log, total_cpu) &
            //"wall time: "//real_text(state%wall_seconds)//" s"//line_end &
            //"exit code: "//integer_text(exit_code)
     call write_line(log%file, text, error)
   end subroutine log_summary
+
+  !> What the ghost penalty carried at most.
+  pure function largest_share_text(state) result(text)
+    type(run_state_t), intent(in) :: state !! at the end of the run
+    character(:), allocatable :: text
+
+    text = ""
+    if (state%n_ghost_pairs < 0) return
+    text = "ghost penalty: largest share of the load "//real_text(state%ghost_share)//line_end
+  end function largest_share_text
 
   !> CPU seconds by kind of work.
   pure function seconds_text(log, total) result(text)

@@ -48,6 +48,10 @@ module mpm_run_state
     integer  :: n_constraints = 0       !! its volumetric constraints
     integer  :: n_checked = 0           !! elements in the checkerboard index
     real(dp), allocatable :: checkerboard     !! index of the pressure [-]; unallocated: not asked
+    integer  :: n_ghost_pairs = -1      !! pairs of elements of the ghost penalty, -1 without one
+    real(dp) :: eigenvalue(2) = 0.0_dp  !! smallest and largest of the tangent, 0 if not asked for
+    real(dp) :: ghost_share_now = 0.0_dp !! part of the load that the ghost penalty carries [-]
+    real(dp) :: ghost_share = 0.0_dp    !! largest one of the run so far [-]
     real(dp), allocatable :: reaction(:, :)   !! (n_dim, n_node)  internal minus applied force where
                                               !!                  prescribed, 0 elsewhere [force]
     real(dp), allocatable :: applied(:, :)    !! (n_dim, n_node)  external nodal forces [force]

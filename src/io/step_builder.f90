@@ -193,6 +193,7 @@ contains
       newton%tolerance = parameter_real(card, "TOLERANCE", newton%tolerance)
       newton%max_iterations = parameter_integer(card, "MAX ITERATIONS", newton%max_iterations)
       newton%max_backtracks = parameter_integer(card, "MAX BACKTRACKS", newton%max_backtracks)
+      newton%eigenvalues = has_parameter(card, "EIGENVALUES")
     end associate
   end subroutine build_controls
 

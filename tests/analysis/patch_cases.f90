@@ -1,5 +1,6 @@
 !> One-patch cases of an independent implementation, and random ones, for the tests of assembly.
 module patch_cases
+  use mpm_ghost_penalty, only: build_ghost
   use mpm_kinds, only: dp
   use mpm_material, only: law_elastic, law_von_mises
   use mpm_material_points, only: n_hardening
@@ -170,7 +171,12 @@ contains
         dofs%n = dofs%n + mesh%n_dim
       end do
     end associate
-    call build_pattern(system%tangent, system%map, body%patches, body%mesh, system%dofs, system%active)
+    if (body%ghost_gamma > 0.0_dp) then
+      call build_ghost(system%ghost, body%ghost_gamma, body%mesh, body%points, body%material, &
+                       system%active)
+    end if
+    call build_pattern(system%tangent, system%map, body%patches, body%mesh, system%dofs, &
+                       system%active, system%ghost%node)
   end subroutine prepare
 
 end module patch_cases

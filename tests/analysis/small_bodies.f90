@@ -3,6 +3,7 @@ module small_bodies
   use mpm_amplitude, only: amplitude_t, time_increment_t
   use mpm_dof_map, only: constraint_t, number_dofs, turn_prescribed
   use mpm_error, only: error_t
+  use mpm_ghost_penalty, only: build_ghost
   use mpm_kinds, only: dp
   use mpm_linear_solver, only: analyse
   use mpm_material, only: law_elastic, law_von_mises, material_t
@@ -138,8 +139,10 @@ contains
     call find_active(system, body%points)
     call number_dofs(system%dofs, body%mesh, system%active, constraint, &
                      time_increment_t(0.0_dp, 1.0_dp, 1.0_dp), amplitude)
+    call build_ghost(system%ghost, body%ghost_gamma, body%mesh, body%points, body%material, &
+                     system%active)
     call build_pattern(system%tangent, system%map, body%patches, body%mesh, system%dofs, &
-                       system%active)
+                       system%active, system%ghost%node)
     call analyse(system%solver, system%tangent, k)
   end subroutine hold
 
@@ -156,8 +159,10 @@ contains
     frames%of_node = [(1, i=1, body%mesh%n_node)]
     frames%rotation = reshape(transpose(q), [size(q, 1), size(q, 1), 1])
     call turn_prescribed(system%dofs, frames)
+    call build_ghost(system%ghost, body%ghost_gamma, body%mesh, body%points, body%material, &
+                     system%active)
     call build_pattern(system%tangent, system%map, body%patches, body%mesh, system%dofs, &
-                       system%active)
+                       system%active, system%ghost%node)
     call analyse(system%solver, system%tangent, i)
   end subroutine incline
 
