@@ -23,10 +23,7 @@ contains
     integer :: i, card
 
     if (.not. model%motion%active .or. model%motion%with_body) return
-    card = 0
-    do i = 1, size(deck%card)
-      if (deck%card(i)%keyword == "MOVING MESH") card = i
-    end do
+    card = card_of_motion(deck)
     do i = 1, size(model%step)
       if (is_driver_prescribed(model, i)) then
         call check_axes(model, deck, context, card)
@@ -40,6 +37,15 @@ contains
       end if
     end do
   end subroutine check_driver
+
+  !> The *MOVING MESH of a deck.
+  pure integer function card_of_motion(deck) result(card)
+    type(deck_t), intent(in) :: deck !! with one such card
+
+    do card = size(deck%card), 1, -1
+      if (deck%card(card)%keyword == "MOVING MESH") return
+    end do
+  end function card_of_motion
 
   !> Whether a step prescribes the displacement of any driver node along the motion.
   pure logical function is_driver_prescribed(model, i_step) result(prescribed)
