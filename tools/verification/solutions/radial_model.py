@@ -2,13 +2,14 @@
 
 The exact solution of thick_ring.py is that of an incompressible body; a body with Poisson's ratio
 0.499 is not one. This model has the same law as the program (Hencky, von Mises) and shows by how
-much the pressure differs. Source: docs/theory.md, section 18, (23i) and (23j).
+much the pressure differs. Source: docs/theory.md, section 18, (23i).
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import solve_banded
+
 from verification.solutions.thick_ring import SPHERE
 
 MOST_ITERATIONS = 25
@@ -17,15 +18,17 @@ TOLERANCE = 1e-10  # of a correction, over the largest displacement
 
 @dataclass(frozen=True)
 class Material:
-    """Isotropic, linear in logarithmic strain; perfectly plastic.
+    """Isotropic, linear in logarithmic strain; plastic by von Mises.
 
     young, poisson   Young's modulus [stress], Poisson's ratio [-]
     strength         uniaxial yield stress of the Kirchhoff stress [stress]
+    hardening        its rise with the plastic strain [stress]
     """
 
     young: float
     poisson: float
     strength: float = np.inf
+    hardening: float = 0.0
 
     @property
     def shear_modulus(self) -> float:
@@ -37,26 +40,37 @@ class Material:
         """K [stress]."""
         return self.young / (3.0 * (1.0 - 2.0 * self.poisson))
 
-    def stress(self, trial: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Closed radial return in principal axes.
 
-        trial   (3, n) elastic logarithmic strain [-]
-        Answers (3, n) Kirchhoff stress, (3, n) elastic strain, (3, 3, n) d stress / d trial.
-        """
-        mean = trial.mean(axis=0)
-        deviator = trial - mean
-        size = np.maximum(np.sqrt(1.5) * np.linalg.norm(deviator, axis=0), 1e-300)
-        q_trial = 2.0 * self.shear_modulus * size
-        kept = np.minimum(1.0, self.strength / q_trial)
-        elastic = mean + kept * deviator
-        tau = 3.0 * self.bulk_modulus * mean + 2.0 * self.shear_modulus * kept * deviator
-        normal = np.sqrt(1.5) * deviator / size
-        flows = (kept < 1.0).astype(float)
-        projector = (np.eye(3) - 1.0 / 3.0)[:, :, None]
-        rate = self.bulk_modulus + 2.0 * self.shear_modulus * kept * (
-            projector - flows * normal[:, None, :] * normal[None, :, :]
-        )
-        return tau, elastic, rate
+@dataclass
+class State:
+    """What the shells remember: (3, n) elastic logarithmic, (n) plastic strain [-]."""
+
+    elastic: np.ndarray
+    plastic: np.ndarray
+
+
+def update_stress(material: Material, state: State, step: np.ndarray):
+    """Closed radial return in principal axes.
+
+    step    (3, n) increment of the logarithmic strain [-]
+    Answers (3, n) Kirchhoff stress [stress], (3, 3, n) its derivative, the state after the step.
+    """
+    twice_g, h = 2.0 * material.shear_modulus, material.hardening
+    trial = state.elastic + step
+    mean = trial.mean(axis=0)
+    deviator = trial - mean
+    size = np.maximum(np.sqrt(1.5) * np.linalg.norm(deviator, axis=0), 1e-300)
+    beyond = np.maximum(twice_g * size - material.strength - h * state.plastic, 0.0)
+    flow = beyond / (1.5 * twice_g + h)
+    kept = 1.0 - 1.5 * flow / size
+    normal = np.sqrt(1.5) * deviator / size
+    turned = np.where(beyond > 0.0, kept - h / (1.5 * twice_g + h), 0.0)
+    projector = (np.eye(3) - 1.0 / 3.0)[:, :, None]
+    rate = material.bulk_modulus + twice_g * (
+        kept * projector - turned * normal[:, None, :] * normal[None, :, :]
+    )
+    tau = 3.0 * material.bulk_modulus * mean + twice_g * kept * deviator
+    return tau, rate, State(mean + kept * deviator, state.plastic + flow)
 
 
 class RadialModel:
@@ -76,7 +90,7 @@ class RadialModel:
         self.material = material
         self.radius = np.geomspace(inner, outer, n_shells + 1)
         self.u = np.zeros(n_shells + 1)
-        self.elastic = np.zeros((3, n_shells))
+        self.state = State(np.zeros((3, n_shells)), np.zeros(n_shells))
         self.pressure = 0.0
         thickness = np.diff(self.radius)
         centre = 0.5 * (self.radius[1:] + self.radius[:-1])
@@ -89,12 +103,13 @@ class RadialModel:
         """(2, n) radial and hoop stretch of the shells, less 1."""
         return np.einsum("iae,ae->ie", self._slope, np.array([u[:-1], u[1:]]))
 
-    def _forces(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Internal forces (n + 1), banded tangent (3, n + 1), elastic strain (3, n) at u."""
+    def _forces(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, State]:
+        """Internal forces (n + 1), banded tangent (3, n + 1), state of the shells at u."""
         before, now = self._stretch_less_one(self.u), self._stretch_less_one(u)
         radial, hoop = np.log1p((now - before) / (1.0 + before))
         third = hoop if self.m == SPHERE else np.zeros_like(hoop)
-        tau, elastic, rate = self.material.stress(self.elastic + np.array([radial, hoop, third]))
+        step = np.array([radial, hoop, third])
+        tau, rate, state = update_stress(self.material, self.state, step)
         if self.m == SPHERE:  # both hoop strains are one unknown
             rate[:, 1] += rate[:, 2]
         stretch = 1.0 + now
@@ -103,7 +118,7 @@ class RadialModel:
         modulus = self._share[:, None, :] * modulus / (stretch[:, None, :] * stretch[None, :, :])
         force = np.einsum("ie,iae->ae", nominal, self._slope)
         block = np.einsum("iae,ije,jbe->abe", self._slope, modulus, self._slope)
-        return (*self._assembled(force, block), elastic)
+        return (*self._assembled(force, block), state)
 
     def _assembled(self, force: np.ndarray, block: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Sums over the shells: forces and banded tangent of the radii."""
@@ -121,13 +136,13 @@ class RadialModel:
         r = self.radius + self.u
         u = self.u + isochoric_step(r, a, self.m)
         for _ in range(MOST_ITERATIONS):
-            internal, tangent, elastic = self._forces(u)
+            internal, tangent, state = self._forces(u)
             reaction = internal[0]
             tangent[1, 0], tangent[0, 1] = 1.0, 0.0
             internal[0] = 0.0
             correction = solve_banded((1, 1), tangent, internal)
             if np.abs(correction).max() <= TOLERANCE * np.abs(u).max():
-                self.u, self.elastic = u, elastic
+                self.u, self.state = u, state
                 self.pressure = reaction / a ** (self.m - 1)
                 return self.pressure
             u = u - correction

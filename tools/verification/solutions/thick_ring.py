@@ -1,8 +1,8 @@
 """Thick cylinder (plane strain) or sphere that is widened from inside: exact solution.
 
-Incompressible, elastic by Hencky's law, then perfectly plastic by von Mises. The radius of every
-material point follows from the inner radius alone, so everything is known in closed form.
-Source: docs/theory.md, section 18, (23) to (23h).
+Incompressible, elastic by Hencky's law, then plastic by von Mises with linear hardening or none.
+The radius of every material point follows from the inner radius alone, so everything is known in
+closed form. Source: docs/theory.md, section 18, (23) to (23h).
 """
 
 import math
@@ -27,6 +27,7 @@ class ThickRing:
     inner, outer   radii a0 and b0 before loading [length]
     shear_modulus  G [stress]
     strength       uniaxial yield stress, math.inf for an elastic ring [stress]
+    hardening      rise of the yield stress with the plastic strain [stress]
     """
 
     m: int
@@ -34,11 +35,17 @@ class ThickRing:
     outer: float
     shear_modulus: float
     strength: float = math.inf
+    hardening: float = 0.0
 
     @property
-    def largest_difference(self) -> float:
-        """Hoop less radial stress where it flows, Y of (23d) [stress]."""
+    def first_difference(self) -> float:
+        """Hoop less radial stress at first yield, Y of (23d) [stress]."""
         return self.strength * (2.0 / math.sqrt(3.0) if self.m == CYLINDER else 1.0)
+
+    @property
+    def plastic_share(self) -> float:
+        """eta of (23d), the slope of the stress where it flows over the elastic one."""
+        return self.hardening / (3.0 * self.shear_modulus + self.hardening)
 
     def swelling(self, a: float) -> float:
         """k = r^m - R^m of all points when the inner radius is a (23)."""
@@ -50,26 +57,31 @@ class ThickRing:
 
     def plastic_radius(self, a: float) -> float:
         """c of (23e), within a and b: the material flows between a and c [length]."""
-        elastic_limit = -math.expm1(-self.largest_difference / (2.0 * self.shear_modulus))
+        elastic_limit = -math.expm1(-self.first_difference / (2.0 * self.shear_modulus))
         c = (self.swelling(a) / elastic_limit) ** (1.0 / self.m)
         return min(max(c, a), self.outer_radius(a))
 
     def stress_difference(self, r, a: float):
         """Hoop less radial stress at r (23b), (23d) [stress]."""
         elastic = -2.0 * self.shear_modulus * np.log1p(-self.swelling(a) / np.asarray(r) ** self.m)
-        return np.minimum(elastic, self.largest_difference)
+        beyond = np.maximum(elastic - self.first_difference, 0.0)
+        return np.minimum(elastic, self.first_difference) + self.plastic_share * beyond
 
     def radial_stress(self, r, a: float):
         """Radial stress at r (23f) [stress]."""
         c, k = self.plastic_radius(a), self.swelling(a)
         r = np.asarray(r, dtype=float)
-        r_elastic = np.maximum(r, c)
-        outside = dilogarithm(k / self.outer_radius(a) ** self.m)
-        of_elastic = (
-            (2.0 * self.shear_modulus / self.m) * (dilogarithm(k / r_elastic**self.m) - outside)
+        slope = 2.0 * self.shear_modulus / self.m
+        at_r, at_c, at_b = (
+            dilogarithm(k / radius**self.m)
+            for radius in (r, np.maximum(r, c), self.outer_radius(a))
         )  # fmt: skip
-        of_plastic = self.largest_difference * np.log(r_elastic / r) if c > a else 0.0
-        return -(self.m - 1) * (of_plastic + of_elastic)
+        integral = slope * (at_c - at_b)
+        if c > a:
+            constant = (1.0 - self.plastic_share) * self.first_difference
+            integral += constant * np.log(np.maximum(r, c) / r)
+            integral += self.plastic_share * slope * (at_r - at_c)
+        return -(self.m - 1) * integral
 
     def mean_stress(self, r, a: float):
         """A third of the trace of the stress at r (23g) [stress]."""
@@ -81,5 +93,5 @@ class ThickRing:
         return -float(self.radial_stress(a, a))
 
     def limit_pressure(self) -> float:
-        """Limit pressure at small strain (23h) [stress]."""
-        return (self.m - 1) * self.largest_difference * math.log(self.outer / self.inner)
+        """Limit pressure at small strain without hardening (23h) [stress]."""
+        return (self.m - 1) * self.first_difference * math.log(self.outer / self.inner)
