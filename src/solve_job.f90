@@ -287,7 +287,8 @@ contains
     type(body_t), intent(in)         :: body
     type(model_t), intent(in)        :: model
 
-    state%ghost_share_now = ghost_share(system%ghost, system%u, system%f_int)
+    state%ghost_share_now = ghost_share(system%ghost, system%u, system%f_int, &
+                                        maxval(abs(state%node_u) + abs(system%u)))
     state%ghost_share = max(state%ghost_share, state%ghost_share_now)
     state%applied = system%f_ext
     state%reaction = part_along(model%frames, system%f_int - system%f_ext, system%dofs%fixed)

@@ -19,6 +19,7 @@ module mpm_ghost_penalty
   public :: add_ghost_force, add_ghost_tangent, build_ghost, ghost_block, ghost_energy
   public :: ghost_share, open_ghost
 
+  real(dp), parameter :: rounding = 1.0e-9_dp    !! jumps below this part of the motion are none
   real(dp), parameter :: default_gamma = 5.0e-4_dp !! factor without GAMMA in the deck [-]
 
   !> The pairs of an increment and their coefficients.
@@ -238,17 +239,25 @@ contains
 
   !> Part of the load that the penalty carries, in the sense of virtual work. In equilibrium the
   !! internal force is the applied one and the reactions. Source: theory.md (18d).
-  pure function ghost_share(ghost, u, f_int) result(share)
+  pure function ghost_share(ghost, u, f_int, motion) result(share)
     type(ghost_penalty_t), intent(in) :: ghost !! built
     real(dp), intent(in) :: u(:, :)            !! (n_dim, n_node)  displacement of the increment
     real(dp), intent(in) :: f_int(:, :)        !! (n_dim, n_node)  with the penalty [force]
-    real(dp) :: share                          !! [-], 0 where the penalty does nothing
-    real(dp) :: work
+    real(dp), intent(in) :: motion             !! largest displacement of the run [length]
+    real(dp) :: share                          !! [-], 0 where all jumps are rounding errors
+    real(dp) :: noise, work
+    integer  :: pair
 
     share = 2.0_dp*ghost_energy(ghost, u)
-    if (share <= 0.0_dp) return
-    work = abs(sum(u*f_int))
-    share = share/max(work, tiny(work)/epsilon(work))
+    noise = sum([(ghost%stiffness(pair)*sum(ghost%jump(:, ghost%node%first(pair): &
+                                             ghost%node%first(pair + 1) - 1)**2), &
+                  pair=1, ghost%pairs%n)])*(rounding*motion)**2
+    if (share > noise) then
+      work = abs(sum(u*f_int))
+      share = share/max(work, tiny(work)/epsilon(work))
+    else
+      share = 0.0_dp
+    end if
   end function ghost_share
 
 end module mpm_ghost_penalty
