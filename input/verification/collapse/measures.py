@@ -10,7 +10,7 @@ def work_of_weight(job):
     """Force times fall of the centre of mass, increment by increment, with the mean force. [kJ/m]"""
     ledger = job.ledger
     weight = GRAVITY * ledger["time"] * ledger["mass"]
-    fall = -np.diff(ledger["centre_2"])
+    fall = -np.diff(ledger["centre"][:, 1])
     return float(np.sum(0.5 * (weight[1:] + weight[:-1]) * fall))
 
 
@@ -27,3 +27,18 @@ def internal_energy(job):
 def energy_ratio(job):
     """Internal energy over the work of the weight; 1 when energy is balanced."""
     return internal_energy(job) / work_of_weight(job)
+
+
+def points_left(job):
+    """Points at the end of the run."""
+    return float(job.ledger["count"][-1] - job.ledger["lost"][-1])
+
+
+def mass_ratio(job):
+    """Mass at the end over that at the start."""
+    return float(job.ledger["mass"][-1] / job.ledger["mass"][0])
+
+
+def cuts(job):
+    """Attempts that failed."""
+    return float(job.iterations["attempt"].max() - 1)
