@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The coarser and the finer mesh of the footing, by make_mesh.py of input/footing.
 
-    python make_meshes.py       needs gmsh, see input/footing/README.md
+python make_meshes.py       needs gmsh, see input/footing/README.md
 """
 
 import sys
