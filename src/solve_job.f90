@@ -92,9 +92,8 @@ contains
     type(run_state_t), intent(inout)  :: state
     type(model_t), intent(in)         :: model
     type(error_t), allocatable, intent(out) :: error
-    type(newton_report_t)   :: report
-    type(location_report_t) :: location
-    real(dp), allocatable   :: u_start(:, :)
+    type(newton_report_t) :: report
+    real(dp), allocatable :: u_start(:, :)
 
     u_start = analysis%body%points%u
     associate (body => analysis%body, system => analysis%system, schedule => analysis%schedule)
@@ -112,27 +111,43 @@ contains
           if (allocated(error)) return
           cycle
         end if
-        call accept_points(body, system)
-        call accept_step(schedule, report%n_iterations)
-        call lay_out_mesh(body, system, model%motion, error)
-        if (allocated(error)) return
-        call locate_points(body%points, body%mesh, analysis%locator, model%location, location)
-        call find_active(system, body%points)
-        call locate_surface_points(body%surface, body%mesh, system%active)
-        call note_location(state, schedule, location)
-        if (output%metered) call note_locking(state, body, system)
-        call write_increment(output, model, body%mesh, body%points, state, error)
-        if (allocated(error)) return
-        if (location%first_lost > 0 .and. model%location%lost_action == lost_is_error) then
-          call report_lost_point(error, body, location, model)
-          return
-        end if
-        call check_count(schedule, model, error)
+        call close_increment(analysis, output, state, model, report%n_iterations, error)
         if (allocated(error)) return
       end do
       call report_move(output%log, model%step(schedule%step), body%points, u_start, error)
     end associate
   end subroutine solve_step
+
+  !> A converged increment becomes history: points and mesh move, points are located again, the
+  !! results are written. Source: theory.md (16), (17).
+  subroutine close_increment(analysis, output, state, model, n_iterations, error)
+    type(analysis_t), intent(inout)   :: analysis
+    type(run_output_t), intent(inout) :: output
+    type(run_state_t), intent(inout)  :: state
+    type(model_t), intent(in)         :: model
+    integer, intent(in)               :: n_iterations !! of the increment
+    type(error_t), allocatable, intent(out) :: error  !! lost point, inverted mesh, file, too many
+    type(location_report_t) :: location
+
+    associate (body => analysis%body, system => analysis%system, schedule => analysis%schedule)
+      call accept_points(body, system)
+      call accept_step(schedule, n_iterations)
+      call lay_out_mesh(body, system, model%motion, error)
+      if (allocated(error)) return
+      call locate_points(body%points, body%mesh, analysis%locator, model%location, location)
+      call find_active(system, body%points)
+      call locate_surface_points(body%surface, body%mesh, system%active)
+      call note_location(state, schedule, location)
+      if (output%metered) call note_locking(state, body, system)
+      call write_increment(output, model, body%mesh, body%points, state, error)
+      if (allocated(error)) return
+      if (location%first_lost > 0 .and. model%location%lost_action == lost_is_error) then
+        call report_lost_point(error, body, location, model)
+        return
+      end if
+      call check_count(schedule, model, error)
+    end associate
+  end subroutine close_increment
 
   !> The body at time zero; with the standard formulation every element is its own patch.
   subroutine make_body(body, model)

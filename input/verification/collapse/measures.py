@@ -7,7 +7,7 @@ STRENGTH = np.sqrt(1.5) * 20.0  # kPa, the radius as uniaxial strength
 
 
 def work_of_weight(job):
-    """Force times fall of the centre of mass, increment by increment, with the mean force. [kJ/m]"""
+    """Mean force times fall of the centre of mass, summed over the increments. [kJ/m]"""
     ledger = job.ledger
     weight = GRAVITY * ledger["time"] * ledger["mass"]
     fall = -np.diff(ledger["centre"][:, 1])
