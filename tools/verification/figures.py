@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from tessera_post.cli import run_command
 from tessera_post.errors import PostError
 from tessera_post.job import Job
@@ -71,5 +72,8 @@ def draw_studies(studies: Sequence[StudyResult], path: Path) -> None:
     sizes = sorted({size for result in studies for size in result.study.h})
     axes.set_xticks(sizes, [f"{size:g}" for size in sizes])
     axes.set_xticks([], minor=True)
-    axes.legend(loc="best")
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    figure.legend(loc="outside upper center")
     save(figure, path)

@@ -77,7 +77,10 @@ def mesh_text(orientation, axis):
     places = {middle_of(e[i], e[j]) for e in elements for i, j in combinations(range(4), 2)}
     places |= {middle_of(corner, corner) for e in elements for corner in e}
     number = {place: i for i, place in enumerate(sorted(places, key=lambda p: p[::-1]), 1)}
-    lines = [f"** Orientation {orientation}, diagonals {AXES[axis]}; made by make_meshes.py.", "*NODE"]
+    lines = [
+        f"** Orientation {orientation}, diagonals {AXES[axis]}; made by make_meshes.py.",
+        "*NODE",
+    ]
     for place, i in number.items():
         lines.append(", ".join([str(i), *(f"{0.5 * SIDE * x:g}" for x in place)]))
     lines.append("*ELEMENT, TYPE=C3D10, ELSET=CUBE")
