@@ -13,7 +13,12 @@ from verification.table import case_text
 
 CASES = load_cases(ROOT / "input" / "verification", [])
 # Small decks that go through much of the program: frozen values must be the same in every build.
-EVERYWHERE = {"strip-footing": ("fbar-0499-0250.inp", "standard-03-0250.inp")}
+EVERYWHERE = {
+    "strip-footing": ("standard-03-0250.inp",),
+    "paper-stretch": ("fbar-1-y.inp", "fbar-2-z.inp"),
+    "cook": ("fbar-04999-08.inp", "standard-03-08.inp"),
+    "patches": ("cook-metis-04.inp",),
+}
 
 
 def verdict_of(case, decks, settings):
