@@ -58,10 +58,9 @@ def kirchhoff(left, nu):
     values, vectors = np.linalg.eigh(left)
     strain = 0.5 * np.log(values)
     volume = strain.sum(axis=-1, keepdims=True)
+    mean = volume
     if HAS_PRESSURE:
         mean = np.tensordot(volume, WEIGHTS, axes=(1, 0))[:, None]
-    else:
-        mean = volume
     stress = bulk * mean + 2 * shear * (strain - volume / 3)
     return np.einsum("...ik,...k,...jk->...ij", vectors, stress, vectors)
 
