@@ -4,6 +4,7 @@
 The panel has the corners (0, 0), (48, 44), (48, 60), (0, 44) mm. Each cell is cut by its shorter
 diagonal into two six-node triangles with straight edges. Node sets LEFT and RIGHT, the node TIP
 (the upper right corner), the surface RIGHT (edges of the elements), element set PANEL.
+fringe-8.inc adds empty triangles below the lower edge of panel-8.inc: element set FRINGE.
 
     python make_meshes.py
 """
@@ -11,6 +12,7 @@ diagonal into two six-node triangles with straight edges. Node sets LEFT and RIG
 from pathlib import Path
 
 SIZES = (2, 4, 8, 16, 32)
+FRINGE, FRINGE_DEPTH = 8, 6.0  # cells of the panel that gets one, its depth [mm]
 WIDTH, LEFT_HEIGHT, RIGHT_LOW, RIGHT_HIGH = 48.0, 44.0, 44.0, 60.0  # [mm]
 
 
@@ -88,10 +90,35 @@ def mesh_text(n):
     return "\n".join(lines) + "\n"
 
 
+def fringe_text(n):
+    """Nodes and elements of a row of empty cells below the panel."""
+    grid = Grid(n)
+    rows = [[grid.number(i, 0) for i in range(grid.width)]]
+    rows += [[(grid.width + j) * grid.width + i + 1 for i in range(grid.width)] for j in (1, 2)]
+    lines = [f"** Empty cells below panel-{n}.inc; made by make_meshes.py.", "*NODE"]
+    for j in (1, 2):
+        for i, number in enumerate(rows[j]):
+            x, y = grid.coordinates(i, 0)
+            lines.append(f"{number}, {x:.12g}, {y - 0.5 * j * FRINGE_DEPTH:.12g}")
+    lines.append("*ELEMENT, TYPE=CPE6, ELSET=FRINGE")
+    first = 2 * n**2 + n + 1
+    for k in range(n):
+        i = 2 * k
+        # Corners from the lower left one on, and the middles between them.
+        a, b, c, d = rows[2][i], rows[2][i + 2], rows[0][i + 2], rows[0][i]
+        ab, bc, cd, da = rows[2][i + 1], rows[1][i + 2], rows[0][i + 1], rows[1][i]
+        ca = rows[1][i + 1]
+        lines.append(", ".join(map(str, (first + i, a, b, c, ab, bc, ca))))
+        lines.append(", ".join(map(str, (first + i + 1, a, c, d, ca, cd, da))))
+    return "\n".join(lines) + "\n"
+
+
 def main():
     """Writes all meshes beside this file."""
+    folder = Path(__file__).parent
     for n in SIZES:
-        (Path(__file__).parent / f"panel-{n}.inc").write_text(mesh_text(n))
+        (folder / f"panel-{n}.inc").write_text(mesh_text(n))
+    (folder / f"fringe-{FRINGE}.inc").write_text(fringe_text(FRINGE))
 
 
 if __name__ == "__main__":
