@@ -17,9 +17,10 @@ module mpm_initial_stress
     real(dp) :: height = 0.0_dp        !! reference height [length]
   end type initial_stress_t
 
-  !> The first point whose initial stress is outside the yield surface.
+  !> The first point whose initial stress is outside the yield surface, or too large to strain by.
   type :: yield_breach_t
     integer  :: point = 0        !! 0 if there is none
+    logical  :: too_large = .false. !! .true.: the elastic strain would be beyond any use
     real(dp) :: found = 0.0_dp   !! sqrt(3 J2) of its stress [force/length^2]
     real(dp) :: allowed = 0.0_dp !! sqrt(3 J2) at first yield [force/length^2]
   end type yield_breach_t
@@ -77,8 +78,8 @@ contains
       call state_of_stress(state, materials(points%material(p)), points%state%cauchy(:, p))
       points%state%strain_e(:, p) = state%strain_e
       points%state%left_cauchy_green_e_m1(:, p) = state%left_cauchy_green_e_m1
-      if (.not. state%outside .or. breach%point > 0) cycle
-      breach = yield_breach_t(p, state%found, state%allowed)
+      if (breach%point > 0 .or. .not. (state%outside .or. state%too_large)) cycle
+      breach = yield_breach_t(p, state%too_large, state%found, state%allowed)
     end do
   end subroutine set_initial_stress
 

@@ -3,6 +3,7 @@ module mpm_initial_builder
   use mpm_build_context, only: at_field, build_context_t, fault, place_t, require_element_set
   use mpm_deck_card, only: deck_t, field_count, field_real, field_text, has_parameter
   use mpm_diagnostics, only: quoted
+  use mpm_initial_state, only: largest_strain
   use mpm_initial_stress, only: geostatic_stress, initial_stress_t, set_initial_stress, &
     & yield_breach_t
   use mpm_kinds, only: dp
@@ -109,6 +110,7 @@ contains
     type(build_context_t), intent(inout) :: context !! takes errors
     integer, intent(in) :: at(2)                    !! (2) card and data line
     type(yield_breach_t) :: breach
+    character(:), allocatable :: what
     integer :: e, n
 
     if (model%points%n == 0) return
@@ -121,11 +123,13 @@ contains
     end if
     if (breach%point == 0) return
     e = model%points%element(breach%point)
+    what = " is outside the yield surface, sqrt(3 J2) = "//real_text(breach%found) &
+      & //": expected at most "//real_text(breach%allowed)
+    if (breach%too_large) what = " needs an elastic strain above "//real_text(largest_strain) &
+      & //": expected a stress well below the moduli of *ELASTIC"
     call fault(context, deck, at_field(at(1), at(2), 1), "the initial stress of material point " &
       & //integer_text(breach%point)//" in element " &
-      & //integer_text(model%mesh%parent_label(model%mesh%parent(e)))//" is outside the yield " &
-      & //"surface, sqrt(3 J2) = "//real_text(breach%found)//": expected at most " &
-      & //real_text(breach%allowed))
+      & //integer_text(model%mesh%parent_label(model%mesh%parent(e)))//what)
   end subroutine stress_points
 
 end module mpm_initial_builder
