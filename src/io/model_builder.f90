@@ -7,6 +7,7 @@ module mpm_model_builder
   use mpm_driver_check, only: check_driver
   use mpm_error, only: error_t, exit_model
   use mpm_frame_builder, only: build_frames
+  use mpm_frame_check, only: check_frames_used
   use mpm_initial_builder, only: build_initial_stress
   use mpm_labelled_mesh, only: labelled_mesh_t
   use mpm_material_builder, only: build_amplitudes, build_materials
@@ -51,6 +52,7 @@ contains
       if (model%points%n > 0) call sample_surfaces(model%surface, model%mesh, model%points, &
                                                    carrying_surfaces(model))
       if (context%diag%n_errors == 0) call report_unused(context, deck)
+      if (context%diag%n_errors == 0) call check_frames_used(model, deck, context)
       if (context%diag%n_errors == 0) call check_supports(model, deck, context)
       if (context%diag%n_errors == 0) call check_driver(model, deck, context)
     end if
