@@ -100,7 +100,10 @@ contains
       do while (.not. schedule%finished)
         call start_increment(schedule) ! size from the last outcome
         call prepare_increment(system, body, model, schedule, error) ! unknowns, pattern, loads
-        if (allocated(error)) return
+        if (allocated(error)) then
+          error%message = error%message//place_of(schedule, model)
+          return
+        end if
         call find_equilibrium(system, report, body, model%step(schedule%step)%newton)
         call note_attempt(state, schedule, report, system, body)
         if (report%outcome == outcome_converged) call note_equilibrium(state, system, body, model)
@@ -130,10 +133,15 @@ contains
     type(location_report_t) :: location
 
     associate (body => analysis%body, system => analysis%system, schedule => analysis%schedule)
+      ! First, because it may fail: the last increment is then the one before.
+      call lay_out_mesh(body, system, model%motion, error)
+      if (allocated(error)) then
+        state%node_u = state%node_u - system%u
+        error%message = error%message//place_of(schedule, model)
+        return
+      end if
       call accept_points(body, system)
       call accept_step(schedule, n_iterations)
-      call lay_out_mesh(body, system, model%motion, error)
-      if (allocated(error)) return
       call locate_points(body%points, body%mesh, analysis%locator, model%location, location)
       call find_active(system, body%points)
       call locate_surface_points(body%surface, body%mesh, system%active)
@@ -142,7 +150,7 @@ contains
       call write_increment(output, model, body%mesh, body%points, state, error)
       if (allocated(error)) return
       if (location%first_lost > 0 .and. model%location%lost_action == lost_is_error) then
-        call report_lost_point(error, body, location, model)
+        call report_lost_point(error, body, location, model, schedule)
         return
       end if
       call check_count(schedule, model, error)
@@ -240,14 +248,16 @@ contains
     end if
   end subroutine shorten
 
-  !> Where in time an attempt failed.
+  !> Where in time a run failed: in an attempt, or after an accepted increment.
   pure function place_of(schedule, model) result(text)
     type(schedule_t), intent(in) :: schedule
     type(model_t), intent(in)    :: model
     character(:), allocatable :: text
 
-    text = " (step '"//model%step(schedule%step)%name//"', increment "//integer_text(schedule%increment)// &
-           ", attempt "//integer_text(schedule%attempt)//", step time "//real_text(schedule%step_time)//")"
+    text = " (step '"//model%step(schedule%step)%name//"', increment "// &
+           integer_text(schedule%increment)
+    if (schedule%attempt > 0) text = text//", attempt "//integer_text(schedule%attempt)
+    text = text//", step time "//real_text(schedule%step_time)//")"
   end function place_of
 
   !> Where in the mesh an attempt failed, in the numbers of the input.
@@ -355,11 +365,12 @@ contains
   end subroutine note_location
 
   !> A point left the mesh and the deck wants that to be an error.
-  subroutine report_lost_point(error, body, location, model)
+  subroutine report_lost_point(error, body, location, model, schedule)
     type(error_t), allocatable, intent(out) :: error
     type(body_t), intent(in)            :: body
     type(location_report_t), intent(in) :: location
     type(model_t), intent(in)           :: model
+    type(schedule_t), intent(in)        :: schedule
     character(:), allocatable :: place
     integer :: i
 
@@ -371,7 +382,8 @@ contains
     call make_error(error, exit_lost_point, "error: "//integer_text(location%n_lost)// &
                     " material points left the mesh, the first is point "// &
                     integer_text(body%points%id(location%first_lost))//" at ("//place// &
-                    "): expected a mesh that reaches further, or *LOST POINTS, ACTION=FREEZE or REMOVE")
+                    "): expected a mesh that reaches further, or *LOST POINTS, ACTION=FREEZE or "// &
+                    "REMOVE"//place_of(schedule, model))
   end subroutine report_lost_point
 
   !> More increments than the deck allows.

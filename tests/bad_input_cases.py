@@ -1561,6 +1561,20 @@ job.inp:17:1: error: the initial stress of material point 1 in element 1 is outs
 """),
     ),
     Case(
+        "initial_stress_beyond_stiffness",
+        PLANE,
+        [
+            ("*PLASTIC, LAW=VON MISES, STRENGTH=UNIAXIAL\n1.0, 0.0\n", ""),
+            ("*STEP", "*INITIAL CONDITIONS, TYPE=STRESS\nALL, -1e300, -1, -1\n*STEP"),
+        ],
+        2,
+        text("""
+job.inp:15:1: error: the initial stress of material point 1 in element 1 needs an elastic strain above 1: expected a stress well below the moduli of *ELASTIC
+   15 | ALL, -1e300, -1, -1
+      | ^~~
+"""),
+    ),
+    Case(
         "geostatic_step_that_moves",
         PLANE,
         [
@@ -2997,7 +3011,7 @@ error: no convergence at the smallest increment 1: too many iterations, largest 
         ],
         6,
         text("""
-error: 8 material points left the mesh, the first is point 1 at (5.33333, 0.166667): expected a mesh that reaches further, or *LOST POINTS, ACTION=FREEZE or REMOVE
+error: 8 material points left the mesh, the first is point 1 at (5.33333, 0.166667): expected a mesh that reaches further, or *LOST POINTS, ACTION=FREEZE or REMOVE (step 'PUSH', increment 1, step time 1)
 """),
         arguments=("-q",),
     ),

@@ -106,7 +106,7 @@ def test_load_of_the_mesh_stays_behind(run_tessera):
     assert run.code == 3
     assert run.stderr.rstrip("\n") == (
         "error: node 19 carries a load but belongs to no element that holds material points: "
-        "expected loads on the body only"
+        "expected loads on the body only (step 'TRAVEL', increment 2, attempt 1, step time 2)"
     )
 
 
@@ -167,5 +167,6 @@ def test_load_that_loses_the_body_is_an_error(run_tessera):
     assert run.code == 6
     assert run.stderr.rstrip("\n") == (
         "error: the loaded surface 'ROOF' lost the body at (0.788675, 6): expected an element with "
-        "material points nearer than its own size"
+        "material points nearer than its own size (step 'STEP-1', increment 2, attempt 1, "
+        "step time 0.5)"
     )

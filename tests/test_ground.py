@@ -3,6 +3,7 @@
 import csv
 from math import log
 
+import h5py
 import pytest
 
 LEVEL = """\
@@ -120,3 +121,45 @@ def test_carried_mesh_is_stretched_too(run_tessera):
     run = run_tessera(COLUMN.format(motion="*MOVING MESH, TYPE=LAGRANGIAN", pressure=pressure))
     assert run.code == 0
     assert history(run)[-1]["U2[Y1]"] == pytest.approx(4, rel=1e-9)
+
+
+CARRIED_AWAY = """\
+*GENERATE, TYPE=BOX, DIMENSION=2, ORDER=QUADRATIC
+X, 0, 4, 4
+Y, 0, 4, 4
+*ELSET, ELSET=BODY, BOX
+0, 2, 0, 3
+*NSET, NSET=BASE, BOX
+0, 4, 0, 0
+*FORMULATION, TYPE=FBAR PATCH
+*MOVING MESH, TYPE=LAGRANGIAN
+*MATERIAL, NAME=SOIL
+*ELASTIC
+1000, 0.3
+*MATERIAL POINTS, ELSET=BODY, MATERIAL=SOIL, PER ELEMENT=4
+*STEP, NAME=PUSH
+*STATIC, DIRECT
+0.25, 1
+*BOUNDARY
+BASE, 2
+BASE, 1, 1, 1.2
+*HISTORY, POINT=1,1
+U
+*OUTPUT, FIELD, FREQUENCY=1
+U
+*END STEP
+"""
+
+
+def test_mesh_that_would_invert_leaves_the_last_increment(run_tessera):
+    """Nothing of the increment that the mesh cannot follow is in the results."""
+    run = run_tessera(CARRIED_AWAY, "-q")
+    assert run.code == 3
+    assert "would turn element" in run.stderr
+    assert "(step 'PUSH', increment " in run.stderr
+    rows = history(run)
+    with h5py.File(run.folder / "job.vtkhdf") as file:
+        times = file["VTKHDF/Steps/Values"][()]
+        moved = file["VTKHDF/PointData/U"][-len(file["VTKHDF/PointData/U"]) // len(times) :, 0]
+    assert list(times) == [row["time"] for row in rows]
+    assert moved.max() == pytest.approx(1.2 * rows[-1]["time"], rel=1e-6)
