@@ -1,7 +1,7 @@
 !> The analysis of a job: increments of equilibrium from the first step to the last.
 module mpm_solve_job
   use mpm_amplitude, only: time_increment_t
-  use mpm_dof_map, only: number_dofs, turn_prescribed
+  use mpm_dof_map, only: number_dofs, start_where_nodes_stand, turn_prescribed
   use mpm_equilibrium, only: find_equilibrium, newton_report_t, outcome_converged, outcome_memory, &
     outcome_text
   use mpm_error, only: error_t, exit_lost_point, exit_model, exit_no_convergence, exit_solver, &
@@ -42,7 +42,7 @@ contains
   subroutine solve_job(output, state, model, only_check, error)
     type(run_output_t), intent(inout) :: output        !! open
     type(run_state_t), intent(out)    :: state         !! after the last accepted increment
-    type(model_t), intent(inout)      :: model         !! at time zero; its loads are prepared
+    type(model_t), intent(inout)      :: model         !! at time zero; its conditions are prepared
     logical, intent(in)               :: only_check    !! write increment 0, do not solve
     type(error_t), allocatable, intent(out) :: error   !! no convergence, lost point, file ...
     type(analysis_t) :: analysis
@@ -61,6 +61,7 @@ contains
     end do
     do i = 1, size(model%step)
       if (allocated(error) .or. only_check) exit
+      call start_where_nodes_stand(model%step(i)%constraint, model%frames, state%node_u)
       call begin_step(analysis%schedule, i, model%step(i)%schedule, &
                       stop_times(model, i, analysis%schedule%total_time))
       call solve_step(analysis, output, state, model, error)

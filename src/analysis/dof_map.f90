@@ -7,7 +7,8 @@ module mpm_dof_map
   implicit none
   private
   public :: constraint_t, dof_map_t
-  public :: add_solution, gather_free, number_dofs, prescribed_total, turn_prescribed
+  public :: add_solution, gather_free, number_dofs, prescribed_total, start_where_nodes_stand
+  public :: turn_prescribed
 
   !> A prescribed displacement of a step: one direction, the nodes of one set. The
   !! direction is one of the axes of each node.
@@ -16,6 +17,8 @@ module mpm_dof_map
     integer  :: direction = 0       !! 1..n_dim, along the axes of the node
     real(dp) :: value = 0.0_dp      !! total displacement at the end of the step [length]
     real(dp) :: start = 0.0_dp      !! total displacement at the start of the step [length]
+    logical  :: was_free = .false.  !! .true.: the step before left the nodes free; from holds
+    real(dp), allocatable :: from(:) !! (n)  in place of start, node by node [length]
     integer  :: amplitude = 0       !! index of the amplitude, 0 = linear ramp over the step
     integer  :: card = 0            !! index of the card in the deck
     integer  :: line = 0            !! data line of that card
@@ -82,31 +85,62 @@ contains
     end do
   end subroutine turn_prescribed
 
-  !> Total prescribed displacement at a step time: from the start to the value in a linear ramp,
+  !> Lets constraints of nodes that were free begin where these nodes stand.
+  pure subroutine start_where_nodes_stand(constraints, frames, nodal)
+    type(constraint_t), intent(inout) :: constraints(:) !! of a step that begins
+    type(nodal_frames_t), intent(in) :: frames          !! axes of the nodes
+    real(dp), intent(in) :: nodal(:, :)                 !! (n_dim, n_node)  total displacements
+                                                        !! along the global axes [length]
+    real(dp) :: local(size(nodal, 1))
+    integer :: i, j
+
+    do i = 1, size(constraints)
+      if (.not. constraints(i)%was_free) cycle
+      associate (node => constraints(i)%node)
+        if (.not. allocated(constraints(i)%from)) allocate (constraints(i)%from(size(node)))
+        do j = 1, size(node)
+          local = in_local_axes(frames, node(j), nodal(:, node(j)))
+          constraints(i)%from(j) = local(constraints(i)%direction)
+        end do
+      end associate
+    end do
+  end subroutine start_where_nodes_stand
+
+  !> Total displacements of the nodes of a constraint at the start of the step.
+  pure function totals_at_start(constraint) result(start)
+    type(constraint_t), intent(in) :: constraint !! prescribed displacement
+    real(dp) :: start(size(constraint%node))     !! (n) [length]
+
+    start = constraint%start
+    if (allocated(constraint%from)) start = constraint%from
+  end function totals_at_start
+
+  !> Total prescribed displacements at a step time: from the start to the value in a linear ramp,
   !! or value times amplitude.
   pure function prescribed_total(constraint, time, period, amplitudes) result(total)
     type(constraint_t), intent(in) :: constraint   !! prescribed displacement
     real(dp), intent(in) :: time                   !! step time
     real(dp), intent(in) :: period                 !! length of the step
     type(amplitude_t), intent(in) :: amplitudes(:) !! all amplitudes of the model
-    real(dp) :: total                              !! [length]
-    real(dp) :: base
+    real(dp) :: total(size(constraint%node))       !! (n) [length]
+    real(dp) :: base(size(constraint%node))
 
-    base = merge(constraint%start, 0.0_dp, constraint%amplitude == 0)
+    base = 0.0_dp
+    if (constraint%amplitude == 0) base = totals_at_start(constraint)
     total = base + (constraint%value - base) &
             *step_fraction(constraint%amplitude, time, period, amplitudes)
   end function prescribed_total
 
-  !> Prescribed displacement of an increment. The first one of a step departs from where the
+  !> Prescribed displacements of an increment. The first one of a step departs from where the
   !! nodes stand, so that an amplitude which does not begin there takes effect.
   pure function prescribed_increment(constraint, increment, amplitudes) result(change)
     type(constraint_t), intent(in) :: constraint     !! prescribed displacement
     type(time_increment_t), intent(in) :: increment  !! place of the increment in the step
     type(amplitude_t), intent(in) :: amplitudes(:)   !! all amplitudes of the model
-    real(dp) :: change                               !! [length]
-    real(dp) :: before
+    real(dp) :: change(size(constraint%node))        !! (n) [length]
+    real(dp) :: before(size(constraint%node))
 
-    before = constraint%start
+    before = totals_at_start(constraint)
     if (increment%start > 0.0_dp) then
       before = prescribed_total(constraint, increment%start, increment%period, amplitudes)
     end if

@@ -46,25 +46,28 @@ contains
     if (motion%with_body) text = "a mesh that the body leaves room for, or TYPE=DRIVER"
   end function remedy
 
-  !> Displacement of the driver along the direction: the prescribed one, else the mean of the
-  !! computed displacements of its nodes that belong to active elements. Source: theory.md (17b).
+  !> Displacement of the driver along the direction: the mean over its nodes that belong to active
+  !! elements, of the prescribed displacements or else of the computed ones. A prescribed
+  !! displacement that is the same at all nodes is taken as it is. Source: theory.md (17b).
   pure subroutine driver_displacement(displacement, system, motion, error)
     real(dp), intent(out)           :: displacement  !! of the increment [length]
     type(system_t), intent(in)      :: system        !! converged
     type(mesh_motion_t), intent(in) :: motion        !! driver and direction
     type(error_t), allocatable, intent(out) :: error !! no driver node touches the body
-    real(dp), allocatable :: normal(:)
+    real(dp), allocatable :: normal(:), beyond(:)
     integer, allocatable :: node(:)
     integer :: n_dim
 
     n_dim = size(system%u, 1)
     associate (direction => motion%direction(:n_dim), first => motion%driver(1))
       normal = in_local_axes(system%dofs%frames, first, direction)
+      node = pack(motion%driver, system%dofs%active(motion%driver))
       if (all(system%dofs%fixed(:, first) .or. .not. is_along(normal))) then
         displacement = dot_product(direction, system%dofs%prescribed(:, first))
+        beyond = matmul(direction, system%dofs%prescribed(:, node)) - displacement
+        displacement = displacement + sum(beyond)/real(max(1, size(node)), dp)
         return
       end if
-      node = pack(motion%driver, system%dofs%active(motion%driver))
       displacement = 0.0_dp
       if (size(node) > 0) then
         displacement = sum(matmul(direction, system%u(:, node)))/real(size(node), dp)

@@ -23,6 +23,7 @@ module mpm_boundary_builder
     type(label_table_t) :: label                   !! nodes by number
     logical, allocatable  :: filled(:)             !! (n_node)         is in an element with points
     logical, allocatable  :: fixed(:, :)           !! (n_dim, n_node)  prescribed in the step
+    logical, allocatable  :: was_free(:, :)        !! (n_dim, n_node)  not so in the step before
     real(dp), allocatable :: start(:, :)           !! (n_dim, n_node)  total at the step's start
     real(dp), allocatable :: value(:, :)           !! (n_dim, n_node)  total at the step's end
     integer, allocatable  :: amplitude(:, :)       !! (n_dim, n_node)  amplitude, 0 = ramp
@@ -43,6 +44,7 @@ contains
       call build_label_table(state%label, mesh%node_label, duplicate)
       allocate (state%filled(mesh%n_node), source=.false.)
       allocate (state%fixed(mesh%n_dim, mesh%n_node), source=.false.)
+      allocate (state%was_free(mesh%n_dim, mesh%n_node), source=.false.)
       allocate (state%start(mesh%n_dim, mesh%n_node), source=0.0_dp)
       allocate (state%value(mesh%n_dim, mesh%n_node), source=0.0_dp)
       allocate (state%amplitude(mesh%n_dim, mesh%n_node), source=0)
@@ -241,7 +243,8 @@ contains
       end do
     end do
     state%amplitude = 0
-    state%start = state%value
+    state%was_free = .not. state%fixed
+    state%start = merge(state%value, 0.0_dp, state%fixed)
   end subroutine close_boundary_step
 
   !> The constraint of all nodes that are prescribed like one node, by the same line.
@@ -255,11 +258,13 @@ contains
     constraint%direction = d
     constraint%value = state%value(d, a)
     constraint%start = state%start(d, a)
+    constraint%was_free = state%was_free(d, a)
     constraint%amplitude = state%amplitude(d, a)
     constraint%card = state%card(d, a)
     constraint%line = state%line(d, a)
     constraint%node = pack([(i, i=1, size(left))], left .and. state%card(d, :) == constraint%card &
       & .and. state%line(d, :) == constraint%line &
+      & .and. (state%was_free(d, :) .eqv. constraint%was_free) &
       & .and. abs(state%start(d, :) - constraint%start) <= 0.0_dp &
       & .and. abs(state%value(d, :) - constraint%value) <= 0.0_dp)
   end function alike

@@ -151,7 +151,7 @@ contains
     if (.not. driven .or. i_node == i_first) return
     associate (a => step%constraint(i_node), b => step%constraint(i_first))
       driven = abs(a%value - b%value) <= 0.0_dp .and. abs(a%start - b%start) <= 0.0_dp &
-                  .and. a%amplitude == b%amplitude
+                  .and. (a%was_free .eqv. b%was_free) .and. a%amplitude == b%amplitude
     end associate
   end function is_driven
 
