@@ -1491,6 +1491,17 @@ job.inp:26:1: error: this surface is loaded through the other CARRIER in line 24
 """),
     ),
     Case(
+        "two_carriers_of_two_loads",
+        PLANE,
+        [("*HISTORY", "*DSLOAD\nX1, P, 1\n*DSLOAD, CARRIER=POINTS\nX1, TRVEC, 2, 1, 0\n*HISTORY")],
+        2,
+        text("""
+job.inp:26:1: error: this surface is loaded through the other CARRIER in line 24: expected the same one, or OP=NEW
+   26 | X1, TRVEC, 2, 1, 0
+      | ^~
+"""),
+    ),
+    Case(
         "two_procedures",
         PLANE,
         [("1, 1\n*BOUNDARY", "1, 1\n*GEOSTATIC\n*BOUNDARY")],

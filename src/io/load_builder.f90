@@ -21,6 +21,7 @@ module mpm_load_builder
   type :: load_entry_t
     type(load_t) :: load
     character(:), allocatable :: key !! kind, direction and set, upper case
+    character(:), allocatable :: surface !! of *DSLOAD, upper case; empty for other loads
     integer :: line = 0              !! data line
     logical :: new = .false.         !! given by this step itself
     logical :: ends = .false.        !! goes back to zero in this step
@@ -90,6 +91,7 @@ contains
       new%load = load_t(amplitude=new%load%amplitude, card=i_card)
       new%line = j
       new%new = .true.
+      new%surface = ""
       select case (deck%card(i_card)%keyword)
       case ("CLOAD")
         call build_nodal(new, boundary, model, deck, context)
@@ -185,15 +187,16 @@ contains
     type(build_context_t), intent(inout) :: context !! takes errors
 
     associate (line => deck%card(new%load%card)%data(new%line))
+      new%surface = to_upper(field_text(line, 1))
       call take_surface(new%load, model, deck, context, at_field(new%load%card, new%line, 1))
       if (to_upper(field_text(line, 2)) == "P") then
         new%load%kind = load_pressure
         new%load%value(1) = field_real(line, 3)
-        new%key = "DSLOAD P "//to_upper(field_text(line, 1))
+        new%key = "DSLOAD P "//new%surface
       else
         new%load%kind = load_traction
         call read_vector(new, model%mesh%n_dim, deck, context)
-        new%key = "DSLOAD T "//to_upper(field_text(line, 1))
+        new%key = "DSLOAD T "//new%surface
       end if
     end associate
   end subroutine build_surface_load
@@ -236,17 +239,20 @@ contains
     type(load_entry_t), allocatable :: longer(:)
     integer :: i
 
+    i = other_carrier(state, new)
+    if (i > 0) then
+      associate (old => state%entry(i))
+        call fault(context, deck, at_field(new%load%card, new%line, 1), "this surface is " &
+          & //"loaded through the other CARRIER in line " &
+          & //integer_text(deck%card(old%load%card)%data(old%line)%number) &
+          & //": expected the same one, or OP=NEW")
+      end associate
+      return
+    end if
     do i = 1, state%n
       associate (old => state%entry(i))
-        if (old%key /= new%key) cycle
-        if (old%load%surface /= new%load%surface) then
-          if (old%ends) cycle
-          call fault(context, deck, at_field(new%load%card, new%line, 1), "this surface is " &
-            & //"loaded through the other CARRIER in line " &
-            & //integer_text(deck%card(old%load%card)%data(old%line)%number) &
-            & //": expected the same one, or OP=NEW")
-          return
-        else if (old%new) then
+        if (old%key /= new%key .or. old%load%surface /= new%load%surface) cycle
+        if (old%new) then
           call fault(context, deck, at_field(new%load%card, new%line, 1), "this load is given in " &
             & //"line "//integer_text(deck%card(old%load%card)%data(old%line)%number) &
             & //" of the same step already: expected it once")
@@ -269,6 +275,22 @@ contains
     state%n = state%n + 1
     state%entry(state%n) = new
   end subroutine put_load
+
+  !> A load in force on the same surface through the other carrier, 0 if there is none.
+  pure integer function other_carrier(state, new) result(found)
+    type(load_state_t), intent(in) :: state !! loads in force
+    type(load_entry_t), intent(in) :: new   !! load to be added
+
+    if (len(new%surface) > 0) then
+      do found = 1, state%n
+        associate (old => state%entry(found))
+          if (old%ends .or. old%surface /= new%surface) cycle
+          if (old%load%surface /= new%load%surface) return
+        end associate
+      end do
+    end if
+    found = 0
+  end function other_carrier
 
   !> Loads of the step, and the values with which the next one starts.
   subroutine close_load_step(load, state, period, amplitude)
