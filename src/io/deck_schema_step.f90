@@ -83,6 +83,8 @@ contains
                                             meaning="halvings of one correction"))
     call add_parameter(schema, value_rule_t("EIGENVALUES", value_flag, required=.false., &
                                             meaning="eigenvalues of the tangent in the log"))
+    call add_parameter(schema, value_rule_t("RESET", value_flag, required=.false., &
+                                            meaning="the others go back to their defaults first"))
   end subroutine add_controls
 
   !> *BOUNDARY.

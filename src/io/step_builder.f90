@@ -183,17 +183,20 @@ contains
     end associate
   end subroutine build_schedule
 
-  !> *CONTROLS.
+  !> *CONTROLS: what it does not name stays as it was in the step before, or with RESET goes back
+  !! to its default.
   subroutine build_controls(step, deck, i_card)
-    type(step_t), intent(inout) :: step !! controls are set
+    type(step_t), intent(inout) :: step !! controls of the step before in, those of the step out
     type(deck_t), intent(in) :: deck    !! the deck
     integer, intent(in) :: i_card       !! *CONTROLS
+    type(step_t) :: defaults
 
     associate (card => deck%card(i_card), newton => step%newton)
+      if (has_parameter(card, "RESET")) newton = defaults%newton
       newton%tolerance = parameter_real(card, "TOLERANCE", newton%tolerance)
       newton%max_iterations = parameter_integer(card, "MAX ITERATIONS", newton%max_iterations)
       newton%max_backtracks = parameter_integer(card, "MAX BACKTRACKS", newton%max_backtracks)
-      newton%eigenvalues = has_parameter(card, "EIGENVALUES")
+      newton%eigenvalues = newton%eigenvalues .or. has_parameter(card, "EIGENVALUES")
     end associate
   end subroutine build_controls
 
