@@ -5,7 +5,7 @@ module mpm_boundary_builder
     & is_amplitude, name_hint, place_t, require_node_set, use_name
   use mpm_deck_card, only: deck_card_t, deck_line_t, deck_t, field_count, field_integer, &
     & field_is_integer, field_real, field_text, has_parameter, parameter_choice, parameter_text
-  use mpm_diagnostics, only: quoted
+  use mpm_diagnostics, only: quoted, warning_at_parameter
   use mpm_dof_map, only: constraint_t
   use mpm_error, only: exit_model
   use mpm_kinds, only: dp
@@ -16,7 +16,7 @@ module mpm_boundary_builder
   implicit none
   private
   public :: boundary_state_t, open_boundary, fix_boundary, begin_boundary_step, add_boundary
-  public :: close_boundary_step, find_amplitude, nodes_of_field, check_operation
+  public :: warn_released, close_boundary_step, find_amplitude, nodes_of_field, check_operation
 
   !> What is prescribed at each degree of freedom.
   type :: boundary_state_t
@@ -30,6 +30,7 @@ module mpm_boundary_builder
     integer, allocatable  :: card(:, :)            !! (n_dim, n_node)  card that prescribes it
     integer, allocatable  :: line(:, :)            !! (n_dim, n_node)  data line of that card
     logical, allocatable  :: new(:, :)             !! (n_dim, n_node)  given by this step itself
+    logical, allocatable  :: support(:, :)         !! (n_dim, n_node)  as the model part gave it
   end type boundary_state_t
 
 contains
@@ -51,6 +52,7 @@ contains
       allocate (state%card(mesh%n_dim, mesh%n_node), source=0)
       allocate (state%line(mesh%n_dim, mesh%n_node), source=0)
       allocate (state%new(mesh%n_dim, mesh%n_node), source=.false.)
+      allocate (state%support(mesh%n_dim, mesh%n_node), source=.false.)
       do p = 1, model%points%n
         state%filled(mesh%node(:, model%points%element(p))) = .true.
       end do
@@ -81,6 +83,7 @@ contains
       end associate
     end do
     call add_boundary(state, model, deck, context, i_card)
+    state%support = state%fixed
   end subroutine fix_boundary
 
   !> Begins a step: what was prescribed stays where it is, or is released with OP=NEW.
@@ -215,6 +218,31 @@ contains
 
     number = deck%card(i_card)%data(i_line)%number
   end function line_number
+
+  !> A warning where OP=NEW takes back supports of the model part that the step does not give again.
+  subroutine warn_released(state, mesh, deck, context, range)
+    type(boundary_state_t), intent(inout) :: state  !! with the lines of the step
+    type(mesh_t), intent(in) :: mesh                !! labels
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes the warning
+    integer, intent(in) :: range(2)                 !! (2) first and last card of the step
+    logical :: released(size(state%fixed, 1), size(state%fixed, 2))
+    integer :: i, d, a
+
+    released = state%support .and. .not. state%fixed
+    state%support = state%support .and. state%fixed .and. .not. state%new
+    if (.not. any(released)) return
+    a = findloc(any(released, dim=1), .true., dim=1)
+    d = findloc(released(:, a), .true., dim=1)
+    do i = range(1), range(2) - 1
+      if (deck%card(i)%keyword == "BOUNDARY") exit
+    end do
+    call warning_at_parameter(context%diag, deck, i, "OP", "OP=NEW releases supports of the " &
+      & //"model part, in all "//integer_text(count(released))//", the first is direction " &
+      & //integer_text(d)//" of node "//integer_text(mesh%node_label(a))//" in line " &
+      & //integer_text(line_number(deck, state%card(d, a), state%line(d, a))) &
+      & //": expected them in this step again, unless they are to be free")
+  end subroutine warn_released
 
   !> Constraints of the step from what is prescribed, and the totals with which the next one starts.
   subroutine close_boundary_step(constraint, state, period, amplitude)

@@ -1,7 +1,7 @@
 !> Builds the steps: schedule, controls, and everything in force in each of them.
 module mpm_step_builder
   use mpm_boundary_builder, only: add_boundary, begin_boundary_step, boundary_state_t, &
-    & close_boundary_step, fix_boundary, open_boundary
+    & close_boundary_step, fix_boundary, open_boundary, warn_released
   use mpm_build_context, only: at_field, build_context_t, fault
   use mpm_deck_card, only: deck_t, field_count, field_real, has_parameter, parameter_integer, &
     & parameter_real, parameter_text
@@ -90,6 +90,7 @@ contains
           cycle
         end select
       end do
+      call warn_released(boundary, model%mesh, deck, context, range)
       call close_boundary_step(step%constraint, boundary, step%schedule%period, model%amplitude)
       call close_load_step(step%load, loads, step%schedule%period, model%amplitude)
       if (step%geostatic) call apply_at_once(step%load)
