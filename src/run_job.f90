@@ -62,7 +62,7 @@ contains
     end do
   end subroutine run_job
 
-  !> Deck and model; warnings go to stderr.
+  !> Deck and model; warnings go to stderr, as part of the error if there is one.
   subroutine read_model(model, deck, warnings, options, error)
     type(model_t), intent(out) :: model
     type(deck_t), intent(out)  :: deck
@@ -76,6 +76,7 @@ contains
     call to_error(diag, exit_deck, error)
     if (allocated(error)) return
     call build_model(model, deck, options%lax, diag, error)
+    if (allocated(error)) return
     warnings = warnings_text(diag)
     if (len(warnings) > 0) write (error_unit, "(a)") warnings
   end subroutine read_model

@@ -1247,6 +1247,27 @@ job.inp:6:1: warning: nothing uses node set 'CORNER'
         arguments=("--lax", "-q"),
     ),
     Case(
+        "error_beside_a_warning",
+        PLANE,
+        [
+            ("*BOUNDARY\nX0, 1, 1\n", "*BOUNDARY\n"),
+            ("*STEP, NAME", "*BOUNDARY\nX0, 1, 1\n*STEP, NAME"),
+            (
+                "*END STEP\n",
+                "*END STEP\n*STEP\n*STATIC\n1, 1\n*BOUNDARY, OP=NEW\nY0, 1, 3\n*END STEP\n",
+            ),
+        ],
+        2,
+        text("""
+job.inp:34:15: warning: OP=NEW releases supports of the model part, in all 2, the first is direction 1 of node 4 in line 17: expected them in this step again, unless they are to be free
+   34 | *BOUNDARY, OP=NEW
+      |               ^~~
+job.inp:35:8: error: direction 3 in a plane mesh: expected 1 or 2
+   35 | Y0, 1, 3
+      |        ^
+"""),
+    ),
+    Case(
         "amplitude_not_ascending",
         PLANE,
         [
