@@ -1,5 +1,6 @@
 !> *EXPECT: values that a deck claims, compared with those of the run.
 module mpm_expectations
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mpm_history_columns, only: nodal_values
   use mpm_kinds, only: dp
   use mpm_material_points, only: points_t, status_removed
@@ -164,7 +165,8 @@ contains
   end function values_of_points
 
   !> Sum, mean, smallest, largest value or standard deviation (over n, not n - 1); each item
-  !! counts once. Without items only the sum exists; the others give a huge value.
+  !! counts once. Without items only the sum exists; the others give a huge value, and so does
+  !! every statistic when a value is not finite: it would be hidden by MIN and MAX.
   pure function statistic_of(values, statistic) result(value)
     real(dp), intent(in) :: values(:)     !! one per item
     character(*), intent(in) :: statistic !! SUM, MEAN, MIN, MAX or STD
@@ -172,8 +174,8 @@ contains
     integer :: n
 
     n = size(values)
-    value = merge(0.0_dp, huge(value), statistic == "SUM")
-    if (n == 0) return
+    value = merge(0.0_dp, huge(value), statistic == "SUM" .and. n == 0)
+    if (n == 0 .or. .not. all(ieee_is_finite(values))) return
     select case (statistic)
     case ("MIN")
       value = minval(values)

@@ -181,6 +181,22 @@ def test_measure_that_is_no_number_fails(field):
     assert row_of_measure(measure, Found("m", "bar.inp", math.nan)).failed
 
 
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_measure_without_claim_fails_when_it_is_no_number(value, case, tmp_path):
+    measure = Measure("m", "f", {}, ("bar.inp",), None, 0.0, 0.0, None)  # such as that of a study
+    object.__setattr__(case, "measures", (measure,))
+    result = judge(case, [finished(tmp_path, verdict())], [Found("m", "bar.inp", value)])
+    assert result.problems == [f"'m' of bar.inp is {value}: expected a finite number"]
+    result = judge(case, [finished(tmp_path, verdict())], [Found("m", "bar.inp", 0.0)])
+    assert result.n_failed == 0
+
+
+@pytest.mark.parametrize("kind", ["analytic", "frozen"])
+def test_verdict_that_is_no_number_fails(kind, case, tmp_path):
+    result = judge(case, [finished(tmp_path, verdict(kind, found="NaN", met=True))], [])
+    assert [row.failed for row in result.rows] == [True]
+
+
 def test_order_is_the_slope_of_log_error():
     assert order_of([1.0, 0.5, 0.25], [0.3, 0.075, 0.01875]) == pytest.approx(2.0)
     assert math.isnan(order_of([1.0, 0.5], [0.1, 0.0]))

@@ -97,8 +97,9 @@ def judge(
         result.rows += rows_of_verdicts(run.deck.file, verdicts)
     for measure in case.measures:
         of_measure = [each for each in found if each.measure == measure.name]
-        result.rows += [row_of_measure(measure, each) for each in of_measure if not each.problem]
-        result.problems += [each.problem for each in of_measure if each.problem]
+        lost = [each for each in of_measure if each.problem or not math.isfinite(each.value)]
+        result.rows += [row_of_measure(measure, each) for each in of_measure if each not in lost]
+        result.problems += [problem_of_measure(each) for each in lost]
     have_run = {run.deck.file for run in runs}
     for study in case.studies:
         if have_run.issuperset(study.decks):
@@ -125,19 +126,20 @@ def rows_of_verdicts(deck: str, verdicts: Sequence[Verdict]) -> list[Row]:
     rows: list[Row] = []
     for verdict in verdicts:
         quantity = f"{verdict.what} at {verdict.time}"
-        value = float(verdict.value)
+        value, found = float(verdict.value), number(verdict.found)
+        met = verdict.met and math.isfinite(found)
         if verdict.kind == "analytic":
             tolerance = float(verdict.tolerance)
-            exact = {"exact": value, "tolerance": tolerance, "met": verdict.met}
-            rows.append(Row(deck, quantity, number(verdict.found), **exact))
+            exact = {"exact": value, "tolerance": tolerance, "met": met}
+            rows.append(Row(deck, quantity, found, **exact))
             continue
-        frozen = {"frozen": value, "frozen_met": verdict.met, "place": verdict.place}
+        frozen = {"frozen": value, "frozen_met": met, "place": verdict.place}
         open_rows = (
             i for i, row in enumerate(rows) if row.quantity == quantity and row.frozen is None
         )
         i = next(open_rows, None)
         if i is None:
-            rows.append(Row(deck, quantity, number(verdict.found), **frozen))
+            rows.append(Row(deck, quantity, found, **frozen))
         else:
             rows[i] = replace(rows[i], **frozen)
     return rows
@@ -149,6 +151,12 @@ def number(text: str) -> float:
         return float(text)
     except ValueError:
         return math.nan
+
+
+def problem_of_measure(found: Found) -> str:
+    """Why there is no value."""
+    lost = f"'{found.measure}' of {found.deck} is {found.value}: expected a finite number"
+    return found.problem or lost
 
 
 def row_of_measure(measure: Measure, found: Found) -> Row:
