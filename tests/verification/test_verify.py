@@ -154,6 +154,13 @@ def test_exit_code_must_be_the_expected_one(case, tmp_path):
     assert judge(case, [finished(tmp_path, code=7)], []).n_failed == 1
 
 
+def test_failed_expectation_must_be_among_the_rows(case, tmp_path):
+    result = judge(case, [finished(tmp_path, verdict(), code=7)], [])
+    assert result.problems == ["bar.inp ended with exit code 7, expected 0: it broke"]
+    result = judge(case, [finished(tmp_path, verdict(), verdict(met=False), code=7)], [])
+    assert (result.problems, result.n_failed) == ([], 1)
+
+
 def test_quick_deck_that_is_slow_is_reported(case, tmp_path):
     runs = [finished(tmp_path, seconds=12.0)]
     assert judge(case, runs, [], timed=True).warnings == [

@@ -111,7 +111,8 @@ def problems_of_run(run: DeckRun) -> list[str]:
     """What is wrong with a run as such."""
     wanted = run.deck.exit_code
     verdicts = run.log.verdicts if run.log else []
-    if run.exit_code == EXPECTATION_FAILED and wanted == 0 and verdicts:
+    is_unmet = any(not verdict.met for verdict in verdicts)
+    if run.exit_code == EXPECTATION_FAILED and wanted == 0 and is_unmet:
         return []  # the rows say which
     if run.exit_code != wanted:
         why = f": {run.message}" if run.message else ""
