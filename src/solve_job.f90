@@ -9,6 +9,7 @@ module mpm_solve_job
   use mpm_external_force, only: check_applied, external_force, prepare_loads
   use mpm_geostatic_step, only: report_move
   use mpm_ghost_penalty, only: build_ghost, ghost_share
+  use mpm_increment_work, only: reference_work
   use mpm_increments, only: accept_step, begin_step, cut_back, schedule_t, start_increment
   use mpm_kinds, only: dp, ip
   use mpm_linear_solver, only: analyse, solver_memory, solver_ok
@@ -312,8 +313,13 @@ contains
     type(system_t), intent(in)       :: system
     type(body_t), intent(in)         :: body
     type(model_t), intent(in)        :: model
+    real(dp) :: work
 
-    state%ghost_share_now = ghost_share(system%ghost, system%u, system%f_int, &
+    ! The forces in state are still those of the start.
+    work = reference_work(sum(system%u*(state%applied + state%reaction)), &
+                          sum(system%u*system%f_int), body%points, &
+                          system%kinematics%disp_grad_bar)
+    state%ghost_share_now = ghost_share(system%ghost, system%u, work, &
                                         maxval(abs(state%node_u) + abs(system%u)))
     state%ghost_share = max(state%ghost_share, state%ghost_share_now)
     state%applied = system%f_ext

@@ -237,15 +237,15 @@ contains
     end do
   end function ghost_energy
 
-  !> Part of the load that the penalty carries, in the sense of virtual work. In equilibrium the
-  !! internal force is the applied one and the reactions. Source: theory.md (18d).
-  pure function ghost_share(ghost, u, f_int, motion) result(share)
+  !> Part of the load that the penalty carries, in the sense of virtual work.
+  !! Source: theory.md (18d).
+  pure function ghost_share(ghost, u, work, motion) result(share)
     type(ghost_penalty_t), intent(in) :: ghost !! built
     real(dp), intent(in) :: u(:, :)            !! (n_dim, n_node)  displacement of the increment
-    real(dp), intent(in) :: f_int(:, :)        !! (n_dim, n_node)  with the penalty [force]
+    real(dp), intent(in) :: work               !! to compare with, reference_work [force length]
     real(dp), intent(in) :: motion             !! largest displacement of the run [length]
     real(dp) :: share                          !! [-], 0 where all jumps are rounding errors
-    real(dp) :: noise, work
+    real(dp) :: noise
     integer  :: pair
 
     share = 2.0_dp*ghost_energy(ghost, u)
@@ -253,7 +253,6 @@ contains
                                              ghost%node%first(pair + 1) - 1)**2), &
                   pair=1, ghost%pairs%n)])*(rounding*motion)**2
     if (share > noise) then
-      work = abs(sum(u*f_int))
       share = share/max(work, tiny(work)/epsilon(work))
     else
       share = 0.0_dp
