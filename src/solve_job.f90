@@ -20,7 +20,7 @@ module mpm_solve_job
   use mpm_point_location, only: locate_points, location_report_t, locator_t, lost_is_error
   use mpm_point_update, only: accept_points
   use mpm_run_output, only: run_output_t, write_attempt, write_increment, write_last_state
-  use mpm_run_state, only: make_run_state, note_locking, run_state_t
+  use mpm_run_state, only: make_run_state, note_checkerboard, note_constraints, run_state_t
   use mpm_sparsity, only: build_pattern, pattern_is_current
   use mpm_surface_points, only: locate_surface_points
   use mpm_system, only: body_t, find_active, free_system, open_system, system_t
@@ -55,7 +55,7 @@ contains
                         model%patches%n)
     state%started = wall_time()
     call find_active(analysis%system, analysis%body%points)
-    if (output%metered) call note_locking(state, analysis%body, analysis%system)
+    if (output%metered) call note_checkerboard(state, analysis%body)
     call write_increment(output, model, analysis%body%mesh, analysis%body%points, state, error)
     do i = 1, size(model%step)
       call prepare_loads(model%step(i)%load, model%mesh, model%points)
@@ -148,7 +148,7 @@ contains
       call find_active(system, body%points)
       call locate_surface_points(body%surface, body%mesh, system%active)
       call note_location(state, schedule, location)
-      if (output%metered) call note_locking(state, body, system)
+      if (output%metered) call note_checkerboard(state, body)
       call write_increment(output, model, body%mesh, body%points, state, error)
       if (allocated(error)) return
       if (location%first_lost > 0 .and. model%location%lost_action == lost_is_error) then
@@ -315,6 +315,7 @@ contains
     type(model_t), intent(in)        :: model
     real(dp) :: work
 
+    call note_constraints(state, body%patches, system)
     ! The forces in state are still those of the start.
     work = reference_work(sum(system%u*(state%applied + state%reaction)), &
                           sum(system%u*system%f_int), body%points, &

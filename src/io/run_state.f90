@@ -5,11 +5,13 @@ module mpm_run_state
   use mpm_kinds, only: dp
   use mpm_locking_meter, only: measure_checkerboard, n_active_patches
   use mpm_model, only: model_t
+  use mpm_patches, only: patches_t
   use mpm_system, only: body_t, system_t
   implicit none
   private
   public :: run_info_t, run_state_t
-  public :: end_of_run, estimated_time_left, make_run_info, make_run_state, note_locking
+  public :: end_of_run, estimated_time_left, make_run_info, make_run_state, note_checkerboard
+  public :: note_constraints
 
   !> What stays the same during a run and is no part of the model, or its name in the results.
   type :: run_info_t
@@ -79,17 +81,24 @@ contains
     allocate (state%delta_j_patch(n_patch), source=1.0_dp)
   end subroutine make_run_state
 
-  !> What the locking meter shows. Source: theory.md (22).
-  pure subroutine note_locking(state, body, system)
-    type(run_state_t), intent(inout) :: state !! takes counts and index
-    type(body_t), intent(in)   :: body        !! converged, points located in the new mesh
-    type(system_t), intent(in) :: system      !! of the increment before it
+  !> Unknowns and volumetric constraints of an increment. Source: theory.md (22).
+  pure subroutine note_constraints(state, patches, system)
+    type(run_state_t), intent(inout) :: state !! takes the counts
+    type(patches_t), intent(in) :: patches    !! those of the formulation
+    type(system_t), intent(in)  :: system     !! solved; its active set is that of the increment
 
     state%n_unknowns = system%dofs%n
-    state%n_constraints = n_active_patches(body%patches, system%element)
+    state%n_constraints = n_active_patches(patches, system%element)
+  end subroutine note_constraints
+
+  !> Checkerboard index of the state after an increment. Source: theory.md (22b).
+  pure subroutine note_checkerboard(state, body)
+    type(run_state_t), intent(inout) :: state !! takes index and number of elements
+    type(body_t), intent(in) :: body          !! converged, points located in the new mesh
+
     if (.not. allocated(state%checkerboard)) allocate (state%checkerboard)
     call measure_checkerboard(state%checkerboard, state%n_checked, body%mesh, body%points)
-  end subroutine note_locking
+  end subroutine note_checkerboard
 
   !> Total time at the end of the last step.
   pure function end_of_run(model) result(time)
