@@ -18,6 +18,17 @@ module mpm_eigenvalues
     real(dp) :: largest = 0.0_dp    !! [force/length]
   end type eigenvalues_t
 
+  !> An iteration for the eigenvalue of largest magnitude. Two vectors at a time: symmetry often
+  !! makes the extreme eigenvalues almost equal.
+  type :: iteration_t
+    real(dp), allocatable :: x(:, :)   !! (n, 2)  orthonormal
+    real(dp), allocatable :: y(:, :)   !! (n, 2)  matrix times x
+    real(dp) :: eigenvalue = 0.0_dp    !! so far
+    integer  :: n_steps = 0            !! taken
+    logical  :: settled = .false.      !! the eigenvalue is real and stands
+    logical  :: ended = .false.        !! no further step
+  end type iteration_t
+
 contains
 
   !> Inverse iteration with the factors, power iteration with the matrix. An unsymmetric matrix
@@ -26,56 +37,79 @@ contains
     type(eigenvalues_t), intent(out) :: eigenvalues
     type(linear_solver_t), intent(inout) :: solver !! with the factors of the matrix
     type(csc_matrix_t), intent(in) :: matrix
-    real(dp) :: inverse_of_smallest
-    logical  :: settled(2)
+    type(iteration_t) :: of_inverse, of_matrix
 
     if (matrix%n == 0) return
-    call iterate(inverse_of_smallest, settled(1), matrix, solver)
-    call iterate(eigenvalues%largest, settled(2), matrix)
-    eigenvalues%found = all(settled) .and. abs(inverse_of_smallest) > 0.0_dp
-    if (eigenvalues%found) then
-      eigenvalues%smallest = 1.0_dp/inverse_of_smallest
-    else
-      eigenvalues%largest = 0.0_dp
-    end if
+    call iterate_inverse(of_inverse, solver, matrix)
+    call iterate_matrix(of_matrix, matrix)
+    eigenvalues%found = of_inverse%settled .and. of_matrix%settled &
+                        .and. abs(of_inverse%eigenvalue) > 0.0_dp
+    if (.not. eigenvalues%found) return
+    eigenvalues%smallest = 1.0_dp/of_inverse%eigenvalue
+    eigenvalues%largest = of_matrix%eigenvalue
   end subroutine find_eigenvalues
 
-  !> Eigenvalue of largest magnitude of the matrix, or of its inverse when there are factors.
-  !! Two vectors at a time: symmetry often makes the extreme eigenvalues almost equal.
-  subroutine iterate(eigenvalue, settled, matrix, solver)
-    real(dp), intent(out) :: eigenvalue
-    logical, intent(out)  :: settled
+  !> Eigenvalue of largest magnitude of a matrix.
+  pure subroutine iterate_matrix(iteration, matrix)
+    type(iteration_t), intent(out) :: iteration !! ended
     type(csc_matrix_t), intent(in) :: matrix
-    type(linear_solver_t), intent(inout), optional :: solver !! with the factors
-    real(dp), allocatable :: x(:, :), y(:, :)
+    integer :: k
+
+    call start(iteration, matrix%n)
+    do while (.not. iteration%ended)
+      do k = 1, 2
+        call multiply(matrix, iteration%x(:, k), iteration%y(:, k))
+      end do
+      call step(iteration)
+    end do
+  end subroutine iterate_matrix
+
+  !> Eigenvalue of largest magnitude of the inverse of a matrix; not settled if a solution fails.
+  subroutine iterate_inverse(iteration, solver, matrix)
+    type(iteration_t), intent(out) :: iteration    !! ended
+    type(linear_solver_t), intent(inout) :: solver !! with the factors of the matrix
+    type(csc_matrix_t), intent(in) :: matrix
+    integer :: k, outcome
+
+    call start(iteration, matrix%n)
+    do while (.not. iteration%ended)
+      do k = 1, 2
+        call solve(solver, matrix, iteration%x(:, k), iteration%y(:, k), outcome)
+        if (outcome == solver_ok) cycle
+        iteration%settled = .false.
+        return
+      end do
+      call step(iteration)
+    end do
+  end subroutine iterate_inverse
+
+  !> Two vectors without symmetry.
+  pure subroutine start(iteration, n)
+    type(iteration_t), intent(inout) :: iteration !! before its first step
+    integer, intent(in) :: n                      !! order of the matrix
+    integer :: i
+
+    iteration%x = reshape([(1.0_dp + 0.5_dp*sin(real(i, dp)**2), i=1, 2*n)], [n, 2])
+    call make_orthonormal(iteration%x)
+    allocate (iteration%y(n, 2))
+  end subroutine start
+
+  !> The eigenvalue from x and y, and the next x.
+  pure subroutine step(iteration)
+    type(iteration_t), intent(inout) :: iteration !! y is set
     real(dp) :: before, change
     logical  :: is_real
-    integer  :: i, k, iteration, outcome
 
-    allocate (y(matrix%n, 2))
-    x = reshape([(1.0_dp + 0.5_dp*sin(real(i, dp)**2), i=1, 2*matrix%n)], [matrix%n, 2])
-    call make_orthonormal(x)
-    eigenvalue = 0.0_dp
-    settled = .false.
-    do iteration = 1, max_iterations
-      do k = 1, 2
-        outcome = solver_ok
-        if (present(solver)) then
-          call solve(solver, matrix, x(:, k), y(:, k), outcome)
-        else
-          call multiply(matrix, x(:, k), y(:, k))
-        end if
-        if (outcome /= solver_ok) return
-      end do
-      before = eigenvalue
-      call largest_of_two(eigenvalue, is_real, matmul(transpose(x), y))
-      change = abs(eigenvalue - before)
-      settled = is_real .and. change <= largest_change*abs(eigenvalue)
-      if (change <= tolerance*abs(eigenvalue)) return
-      x = y
-      call make_orthonormal(x)
-    end do
-  end subroutine iterate
+    before = iteration%eigenvalue
+    call largest_of_two(iteration%eigenvalue, is_real, matmul(transpose(iteration%x), iteration%y))
+    change = abs(iteration%eigenvalue - before)
+    iteration%n_steps = iteration%n_steps + 1
+    iteration%settled = is_real .and. change <= largest_change*abs(iteration%eigenvalue)
+    iteration%ended = change <= tolerance*abs(iteration%eigenvalue) &
+                      .or. iteration%n_steps == max_iterations
+    iteration%x = iteration%y
+    call make_orthonormal(iteration%x)
+  end subroutine step
 
   !> Two vectors of unit length, normal to each other; zero where there is only one.
   pure subroutine make_orthonormal(x)
