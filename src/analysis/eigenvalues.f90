@@ -13,6 +13,7 @@ module mpm_eigenvalues
 
   !> Eigenvalues of smallest and of largest magnitude, with their sign.
   type :: eigenvalues_t
+    logical  :: asked = .false.     !! .true.: they were looked for
     logical  :: found = .false.     !! .false.: not asked for, or an iteration did not settle
     real(dp) :: smallest = 0.0_dp   !! [force/length]
     real(dp) :: largest = 0.0_dp    !! [force/length]
@@ -39,6 +40,7 @@ contains
     type(csc_matrix_t), intent(in) :: matrix
     type(iteration_t) :: of_inverse, of_matrix
 
+    eigenvalues%asked = .true.
     if (matrix%n == 0) return
     call iterate_inverse(of_inverse, solver, matrix)
     call iterate_matrix(of_matrix, matrix)

@@ -124,13 +124,25 @@ contains
            //"    Newton: tolerance "//real_text(step%newton%tolerance) &
            //", at most "//integer_text(step%newton%max_iterations)//" iterations and " &
            //integer_text(step%newton%max_backtracks)//" backtracks"//line_end
+    if (step%newton%eigenvalues) text = text//"    eigenvalues of the tangent: " &
+      & //"in every increment"//line_end
     if (allocated(step%constraint)) then
       text = text//"    prescribed displacements: "//integer_text(size(step%constraint))//line_end
     end if
     if (allocated(step%load)) text = text//"    loads: "//integer_text(size(step%load))//line_end
-    if (step%geostatic) text = text//"    geostatic: loads in force from the beginning"//line_end
+    if (step%geostatic) text = text//"    geostatic: loads in force from the beginning" &
+      & //accepted_text(step%largest_move)//line_end
     text = text//"    fields: at the end of the step"//output_text(step)//line_end
   end function step_text
+
+  !> The largest displacement that a geostatic step accepts.
+  pure function accepted_text(largest_move) result(text)
+    real(dp), intent(in) :: largest_move !! [length], 0 = any
+    character(:), allocatable :: text
+
+    text = ""
+    if (largest_move > 0.0_dp) text = ", displacement accepted up to "//real_text(largest_move)
+  end function accepted_text
 
   !> When fields are written besides.
   pure function output_text(step) result(text)

@@ -110,10 +110,14 @@ contains
     character(:), allocatable :: text
 
     text = ""
-    if (.not. report%eigenvalues%found) return
-    text = line_end//"  eigenvalues of the tangent: smallest " &
-           //real_text(report%eigenvalues%smallest)//", largest " &
-           //real_text(report%eigenvalues%largest)
+    if (.not. report%eigenvalues%asked) return
+    text = line_end//"  eigenvalues of the tangent: "
+    if (report%eigenvalues%found) then
+      text = text//"smallest "//real_text(report%eigenvalues%smallest)//", largest " &
+             //real_text(report%eigenvalues%largest)
+    else
+      text = text//"not found"
+    end if
   end function eigenvalues_text
 
   !> One iteration of Newton's method.
