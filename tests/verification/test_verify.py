@@ -101,6 +101,13 @@ def test_case_without_readme_or_decks_is_refused(tmp_path):
         load_case(folder)
 
 
+def test_deck_that_is_not_listed_is_refused(tmp_path):
+    folder = make_case(tmp_path)
+    (folder / "lost.inp").write_text("*HEADING\n")
+    with pytest.raises(CaseError, match=r"no \[\[deck\]\] is 'lost.inp': expected all decks"):
+        load_case(folder)
+
+
 def test_cases_are_found_by_name(tmp_path):
     make_case(tmp_path)
     make_case(tmp_path, CASE.replace("bar.png", "rod.png"), name="rod")
@@ -159,6 +166,20 @@ def test_failed_expectation_must_be_among_the_rows(case, tmp_path):
     assert result.problems == ["bar.inp ended with exit code 7, expected 0: it broke"]
     result = judge(case, [finished(tmp_path, verdict(), verdict(met=False), code=7)], [])
     assert (result.problems, result.n_failed) == ([], 1)
+
+
+def test_run_that_states_nothing_is_a_problem(case, tmp_path):
+    object.__setattr__(case, "studies", ())
+    message = "bar.inp states nothing: expected *EXPECT or a measure with exact or frozen value"
+    assert judge(case, [finished(tmp_path)], []).problems == [message]
+    assert judge(case, [finished(tmp_path, verdict())], []).problems == []
+    found = [Found("plastic strain", "bar.inp", 0.2)]
+    assert judge(case, [finished(tmp_path)], found).problems == []
+    free = Measure("m", "f", {}, ("bar.inp",), None, 0.0, 0.0, None)
+    object.__setattr__(case, "measures", (free,))
+    result = judge(case, [finished(tmp_path)], [Found("m", "bar.inp", 0.2)])
+    assert result.problems == [message]
+    assert judge(case, [finished(tmp_path, code=4, wanted=4)], []).problems == []
 
 
 def test_quick_deck_that_is_slow_is_reported(case, tmp_path):

@@ -202,6 +202,9 @@ def check_references(case: Case, table: TomlTable) -> None:
     """Names must be there once, and what is referred to must be there."""
     files = [deck.file for deck in case.decks]
     check_names(table, "deck", files)
+    for path in sorted(case.folder.glob("*.inp")):
+        if path.name not in files:
+            raise table.error(f"no [[deck]] is '{path.name}': expected all decks of the folder")
     check_names(table, "measure", [measure.name for measure in case.measures])
     check_names(table, "study", [study.name for study in case.studies])
     for item in (*case.measures, *case.studies):

@@ -100,6 +100,7 @@ def judge(
         lost = [each for each in of_measure if each.problem or not math.isfinite(each.value)]
         result.rows += [row_of_measure(measure, each) for each in of_measure if each not in lost]
         result.problems += [problem_of_measure(each) for each in lost]
+    result.problems += problems_without_claim(result)
     have_run = {run.deck.file for run in runs}
     for study in case.studies:
         if have_run.issuperset(study.decks):
@@ -120,6 +121,17 @@ def problems_of_run(run: DeckRun) -> list[str]:
     if run.log is None:
         return [f"{run.deck.file} left no log"]
     return []
+
+
+def problems_without_claim(result: CaseResult) -> list[str]:
+    """Runs that could give anything: no row states a value, no study looks at them."""
+    claimed = {file for study in result.case.studies for file in study.decks}
+    claimed |= {row.deck for row in result.rows if (row.met, row.frozen_met) != (None, None)}
+    return [
+        f"{run.deck.file} states nothing: expected *EXPECT or a measure with exact or frozen value"
+        for run in result.runs
+        if run.exit_code == run.deck.exit_code == 0 and run.deck.file not in claimed
+    ]
 
 
 def rows_of_verdicts(deck: str, verdicts: Sequence[Verdict]) -> list[Row]:
