@@ -8,13 +8,15 @@ import pytest
 from conftest import ROOT
 from small_cases import CASE, make_case
 from tessera_post.log import Log, Verdict
+from verification import judging
+from verification.__main__ import main
 from verification.case import Deck, Measure, Study, load_case, load_cases
 from verification.figures import draw_figures
 from verification.freezing import freeze
 from verification.judging import Row, judge, judge_study, order_of, row_of_measure
 from verification.measuring import Found, measure_all
 from verification.page import page_text
-from verification.running import DeckRun, Settings, run_deck
+from verification.running import DeckRun, Settings, is_checked, run_deck
 from verification.table import case_text
 from verification.texts import error_text
 from verification.toml_table import CaseError
@@ -282,6 +284,22 @@ def test_errors_are_short(error, is_relative, text):
 
 
 # --- runs ----------------------------------------------------------------------------------------
+
+
+def test_build_with_checks_is_known(tessera, tessera_release):
+    assert is_checked(tessera)
+    assert not is_checked(tessera_release)
+
+
+@pytest.mark.parametrize(("program", "n_warnings"), [("tessera", 0), ("tessera_release", 1)])
+def test_labels_are_checked_for_any_release(
+    program, n_warnings, request, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setattr(judging, "MOST_SECONDS", 0.0)
+    make_case(tmp_path / "cases")
+    path = request.getfixturevalue(program)
+    main(["--exe", str(path), "--cases", str(tmp_path / "cases"), "-o", str(tmp_path / "out")])
+    assert capsys.readouterr().out.count("a quick deck takes less than") == n_warnings
 
 
 @pytest.fixture

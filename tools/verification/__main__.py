@@ -15,7 +15,7 @@ from verification.freezing import freeze  # noqa: E402
 from verification.judging import CaseResult, judge  # noqa: E402
 from verification.measuring import measure_all  # noqa: E402
 from verification.page import FIGURES, page_text  # noqa: E402
-from verification.running import Runner, Settings  # noqa: E402
+from verification.running import Runner, Settings, is_checked  # noqa: E402
 from verification.table import case_text  # noqa: E402
 from verification.toml_table import CaseError  # noqa: E402
 
@@ -86,11 +86,11 @@ def verify(cases: list[Case], settings: Settings, options: argparse.Namespace) -
     """Runs, judges, freezes, writes the page; 1 when anything misses."""
     start = time.monotonic()
     results: list[CaseResult] = []
+    timed = settings.n_threads == 1 and not is_checked(settings.program)
     runner = Runner(cases, options.all, settings)
     try:
         for case in cases:
             runs = runner.runs_of(case)
-            timed = options.exe is None and settings.n_threads == 1
             result = judge(case, runs, measure_all(case, runs), timed)
             results.append(result)
             if runs:

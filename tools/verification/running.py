@@ -39,6 +39,13 @@ class DeckRun:
         return self.folder / f"{self.deck.job}.vtkhdf"
 
 
+def is_checked(program: Path) -> bool:
+    """Whether a program is a build with checks, which says nothing about CPU times."""
+    command = [str(program), "--version"]
+    answer = subprocess.run(command, capture_output=True, check=False).stdout
+    return b", Debug)" in answer.partition(b"\n")[0]
+
+
 def run_deck(case: Case, deck: Deck, settings: Settings) -> DeckRun:
     """Runs one deck to its end, in the folder of the case."""
     folder = settings.results / case.name
