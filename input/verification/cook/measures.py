@@ -1,6 +1,9 @@
-"""Figure of Cook's membrane."""
+"""Figure of Cook's membrane, and the job with ghost penalty beside that without."""
 
 from tessera_post.style import COLORS, MARKERS, plt, save
+from verification.siblings import ratio_to_sibling
+
+__all__ = ["draw_tip", "ratio_to_sibling"]
 
 CELLS = (2, 4, 8, 16, 32)
 CURVES = (("fbar", "F-bar patch"), ("standard", "standard"))
