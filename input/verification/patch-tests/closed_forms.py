@@ -86,6 +86,9 @@ def prove_all(job: str, states: States, material: Material, turns: Any, numbers:
     elastic = not math.isfinite(material.strength)
     n_dim = 3 if "-3d-" in job else 2
     stretch, gamma = numbers
+    for fields in states.values():
+        jacobian = float(np.linalg.det(np.array(fields["F"]).reshape(3, 3)))
+        prove(jacobian * tensor(fields["S"]), tensor(fields["TAU"]), "Cauchy stress")
     if elastic:
         for fields in states.values():
             gradient = np.array(fields["F"]).reshape(3, 3)
