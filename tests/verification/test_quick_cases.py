@@ -17,7 +17,17 @@ EVERYWHERE = {
     "strip-footing": ("standard-03-0250.inp",),
     "paper-stretch": ("fbar-1-y.inp", "fbar-2-z.inp"),
     "cook": ("fbar-04999-08.inp", "standard-03-08.inp"),
-    "patches": ("cook-metis-04.inp",),
+    "patches": ("cook-quadratic.inp", "cook-metis-04.inp"),
+    "inclined-roller": (
+        "plane-fbar.inp",
+        "plane-fbar-inclined.inp",
+        "solid-standard.inp",
+        "solid-standard-inclined.inp",
+    ),
+    "traction-patch": ("crossing-2d-points-fbar-064.inp", "crossing-2d-mesh-standard-064.inp"),
+    "hydrostatic": ("heave-fbar-08.inp", "heave-standard-08.inp"),
+    "column": ("carried-fbar-016.inp", "carried-standard-3d-008.inp", "fixed-standard-032.inp"),
+    "thick-cylinder": ("hardening-4-fbar.inp", "large-4-standard.inp"),
 }
 
 
