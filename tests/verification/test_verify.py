@@ -61,6 +61,8 @@ def test_case_is_read(case):
         ('"long.inp"\nlabel', '"bar.inp"\nlabel', "deck 'bar.inp' is there twice"),
         ("exact = 0.2\n", "", "measure 1: expected 'exact' together with 'rtol' or 'atol'"),
         ("atol = 0.05\n", "", "measure 1: expected 'exact' together with 'rtol' or 'atol'"),
+        ("atol = 0.05", 'atol = {"bar.inp" = 1}', "'atol' of 'plastic strain': expected one for"),
+        ("atol = 0.05", 'atol = {"bar.inp" = "a"}', "'atol' of 'bar.inp' is 'a': expected a num"),
         ("{factor = 2.0}", "2.0", "measure 1: 'arguments' is 2.0: expected a table"),
         ('"bar.inp" = 0.2', '"foo.inp" = 0.2', "there is no deck 'foo.inp': there are bar.inp"),
         ('"bar.inp" = 0.2', '"bar.inp" = "a"', "'frozen' of 'bar.inp' is 'a': expected a number"),
@@ -200,6 +202,13 @@ def test_measure_is_compared_with_exact_and_frozen_value():
     assert (row.met, row.frozen_met) == (True, False)
     row = row_of_measure(measure, Found("m", "bar.inp", 2.26))
     assert (row.met, row.frozen_met) == (False, False)
+
+
+def test_tolerance_may_be_given_by_deck(tmp_path):
+    by_deck = 'atol = {"bar.inp" = 0.01, "long.inp" = 0.1}'
+    (measure,) = load_case(make_case(tmp_path, CASE.replace("atol = 0.05", by_deck))).measures
+    assert row_of_measure(measure, Found(measure.name, "long.inp", 0.25)).met is True
+    assert row_of_measure(measure, Found(measure.name, "bar.inp", 0.25)).met is False
 
 
 @pytest.mark.parametrize("field", ["exact", "frozen"])

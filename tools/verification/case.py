@@ -34,9 +34,14 @@ class Measure:
     arguments: dict[str, Any]
     decks: tuple[str, ...]
     exact: float | None
-    rtol: float
-    atol: float
+    rtol: float | dict[str, float]  # of all decks, or by deck
+    atol: float | dict[str, float]  # likewise
     frozen: dict[str, float] | None  # by deck; None: nothing is frozen
+
+    def tolerance_of(self, deck: str) -> float:
+        """How far a deck may be off its exact value."""
+        rtol, atol = (v[deck] if isinstance(v, dict) else v for v in (self.rtol, self.atol))
+        return atol + rtol * abs(self.exact or 0.0)
 
 
 @dataclass(frozen=True)
@@ -154,8 +159,8 @@ def read_measure(table: TomlTable) -> Measure:
         arguments=table.table("arguments", {}),
         decks=tuple(table.texts("decks")),
         exact=table.number("exact", None),
-        rtol=table.number("rtol", 0.0),
-        atol=table.number("atol", 0.0),
+        rtol=table.number_or_by_name("rtol", 0.0),
+        atol=table.number_or_by_name("atol", 0.0),
         frozen=table.numbers_by_name("frozen", None),
     )
     table.finish()
@@ -213,6 +218,11 @@ def check_references(case: Case, table: TomlTable) -> None:
     for measure in case.measures:
         frozen = tuple(measure.frozen or {})
         check_known(table, f"'frozen' of '{measure.name}'", "deck", frozen, list(measure.decks))
+        for key, values in (("rtol", measure.rtol), ("atol", measure.atol)):
+            if isinstance(values, dict) and set(values) != set(measure.decks):
+                raise table.error(
+                    f"'{key}' of '{measure.name}': expected one for each of its decks"
+                )
     for study in case.studies:
         if study.measure is not None:
             known = [measure.name for measure in case.measures]

@@ -176,7 +176,7 @@ def row_of_measure(measure: Measure, found: Found) -> Row:
     """A row with what a measure of a deck should be."""
     row = Row(found.deck, measure.name, found.value)
     if measure.exact is not None:
-        tolerance = measure.atol + measure.rtol * abs(measure.exact)
+        tolerance = measure.tolerance_of(found.deck)
         met = abs(found.value - measure.exact) <= tolerance
         row = replace(row, exact=measure.exact, tolerance=tolerance, met=met)
     if measure.frozen is not None:

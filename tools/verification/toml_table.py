@@ -76,6 +76,12 @@ class TomlTable:
                 raise self.error(f"'{key}' of '{name}' is {value!r}: expected a number")
         return values
 
+    def number_or_by_name(self, key: str, default: float) -> float | dict[str, float]:
+        """A number for all, or a table of numbers."""
+        if isinstance(self._values.get(key), dict):
+            return self.numbers_by_name(key)
+        return self.number(key, default)
+
     def texts(self, key: str, default: Any = REQUIRED) -> Any:
         """A list of texts, not empty."""
         return self._list(key, (str,), "a list of texts", default)
