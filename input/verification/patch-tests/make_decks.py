@@ -335,8 +335,9 @@ function = "draw_shear"
 LIMIT = 1e-11  # of the measures
 
 
-def case_text(jobs: list[str]) -> str:
-    """case.toml."""
+def case_text(exact: dict, limit: float) -> str:
+    """case.toml; limit: TAU11 of flowing shear at its end."""
+    jobs = list(exact)
     files = "".join(f'    "{job}.inp",\n' for job in jobs)
     turning = [f"turning-{n}-2d-standard-plastic.inp" for n in TURNING_STEPS]
     text = CASE
@@ -347,7 +348,9 @@ def case_text(jobs: list[str]) -> str:
         text += f"decks = [\n{files}]\nexact = 0.0\natol = {LIMIT!r}\n"
     decks = "".join(f'    "{file}",\n' for file in turning)
     text += '\n[[measure]]\nname = "stress against continuous flow"\nfunction = "flow_error"\n'
-    text += f"decks = [\n{decks}]\n"
+    errors = [exact[file[:-4]]["1"]["TAU"][0] / limit - 1.0 for file in turning]  # per increment
+    frozen = ", ".join(f'"{file}" = {abs(error):.12g}' for file, error in zip(turning, errors))
+    text += f"decks = [\n{decks}]\nfrozen = {{{frozen}}}\n"
     text += '\n[[study]]\nname = "stress in simple shear, size of the increments"\n'
     text += f'measure = "stress against continuous flow"\ndecks = [\n{decks}]\n'
     return text + f"h = {[SHEAR / n for n in TURNING_STEPS]}\norder = 0.95\n" + FIGURE
@@ -371,7 +374,7 @@ def main() -> None:
     curve["TAU12"] = [float(t[0, 1]) for t in flow]
     content = {"states": exact, "flowing_shear": curve}
     (HERE / "exact.json").write_text(json.dumps(content, indent=1) + "\n")
-    (HERE / "case.toml").write_text(case_text(list(exact)))
+    (HERE / "case.toml").write_text(case_text(exact, curve["TAU11"][-1]))
 
 
 if __name__ == "__main__":
