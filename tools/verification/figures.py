@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from tessera_post.cli import run_command
 from tessera_post.errors import PostError
@@ -57,6 +58,13 @@ def draw_by_function(result: CaseResult, figure: CaseFigure, path: Path) -> None
             job.close()
 
 
+def number_errors(axes: Axes) -> None:
+    """Plain numbers at a logarithmic axis of errors."""
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+
+
 def draw_studies(studies: Sequence[StudyResult], path: Path) -> None:
     """Errors over the size of the cells, with a triangle for the least order."""
     figure, axes = plt.subplots(figsize=(7.0, 4.6))
@@ -72,8 +80,6 @@ def draw_studies(studies: Sequence[StudyResult], path: Path) -> None:
     sizes = sorted({size for result in studies for size in result.study.h})
     axes.set_xticks(sizes, [f"{size:g}" for size in sizes])
     axes.set_xticks([], minor=True)
-    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.yaxis.set_minor_formatter(NullFormatter())
+    number_errors(axes)
     figure.legend(loc="outside upper center")
     save(figure, path)

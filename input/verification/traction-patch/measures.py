@@ -3,6 +3,7 @@
 import numpy as np
 from tessera_post.job import FORMULATIONS, Job
 from tessera_post.style import COLORS, MARKERS, plt, save
+from verification.figures import number_errors
 
 YOUNG, POISSON = 1000.0, 0.3
 VOIGT = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
@@ -107,6 +108,7 @@ def draw_crossing(jobs: dict[str, Job], path) -> None:
     ticks = [1 / 2, 1 / 4, 1 / 8, 1 / 16]
     axes.set_xticks(ticks, ["1/2", "1/4", "1/8", "1/16"])
     axes.set_xticks([], minor=True)
+    number_errors(axes)
     axes.set(xlabel="spacing of points over edge of element", ylabel="error norm of the stress")
-    axes.legend(loc="best", fontsize=9)
+    figure.legend(loc="outside upper center", ncols=2, fontsize=9)
     save(figure, path)
