@@ -136,8 +136,8 @@ def draw_shares(jobs: dict[str, Job], path: Path) -> None:
         load, share = LOAD * ledger["time"][1:], 100 * ledger["ghost_share"][1:]
         look = {"color": COLORS[i % len(COLORS)], "marker": MARKERS[i % len(MARKERS)]}
         formulation, _, points, elements = name.split("-")
-        name = "F-bar patch" if formulation == "fbar" else "standard"
-        label = f"{name}, {int(points)} points, {int(elements)} elements over the depth"
+        method = "F-bar patch" if formulation == "fbar" else "standard"
+        label = f"{method}, {int(points)} points, {int(elements)} elements over the depth"
         axes.plot(load, share, markersize=3, label=label, **look)
     axes.set(xlabel="tip load [kN]", ylabel="share of the penalty [%]", ylim=(0, 1))
     axes.legend(loc="best", fontsize=8)
