@@ -267,16 +267,9 @@ contains
     type(system_t), intent(in)       :: system
     type(body_t), intent(in)         :: body
     type(model_t), intent(in)        :: model
-    real(dp) :: work
 
     call note_constraints(state, body%patches, system)
-    ! The forces in state are still those of the start.
-    work = reference_work(sum(system%u*(state%applied + state%reaction)), &
-                          sum(system%u*system%f_int), body%points, &
-                          system%kinematics%disp_grad_bar)
-    state%ghost_share_now = ghost_share(system%ghost, system%u, work, &
-                                        maxval(abs(state%node_u) + abs(system%u)))
-    state%ghost_share = max(state%ghost_share, state%ghost_share_now)
+    call note_share(state, system, body) ! before the forces of the start are overwritten
     state%applied = system%f_ext
     state%reaction = part_along(model%frames, system%f_int - system%f_ext, system%dofs%fixed)
     state%delta_u = system%u
@@ -286,6 +279,23 @@ contains
     state%delta_j_patch = patch_means(state%delta_j, system%element, body%mesh%volume, &
                                       model%patches%of_element, model%patches%n)
   end subroutine note_equilibrium
+
+  !> What the ghost penalty carries of the load; without pairs nothing is computed.
+  subroutine note_share(state, system, body)
+    type(run_state_t), intent(inout) :: state !! with the forces at the start of the increment
+    type(system_t), intent(in)       :: system
+    type(body_t), intent(in)         :: body
+    real(dp) :: work
+
+    state%ghost_share_now = 0.0_dp
+    if (system%ghost%pairs%n == 0) return
+    work = reference_work(sum(system%u*(state%applied + state%reaction)), &
+                          sum(system%u*system%f_int), body%points, &
+                          system%kinematics%disp_grad_bar)
+    state%ghost_share_now = ghost_share(system%ghost, system%u, work, &
+                                        maxval(abs(state%node_u) + abs(system%u)))
+    state%ghost_share = max(state%ghost_share, state%ghost_share_now)
+  end subroutine note_share
 
   !> Mean volume change of the patches of the deck, also with the standard method, which does not
   !! use it. Source: theory.md (4).
