@@ -1,7 +1,8 @@
-# Foreign libraries, each behind one target: UMFPACK::UMFPACK, METIS::METIS, tessera_hdf5.
+# Foreign libraries, each behind one target: UMFPACK::UMFPACK, METIS::METIS, ZLIB::ZLIB, tessera_hdf5.
 
 find_package(UMFPACK 5.7 REQUIRED)
 find_package(METIS 5.1 REQUIRED)
+find_package(ZLIB REQUIRED)
 
 # Without the component HL, which nothing here uses: on a Debian without the development files of curl
 # and OpenSSL CMake takes it for found, but names a library that does not exist.

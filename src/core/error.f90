@@ -4,7 +4,7 @@ module mpm_error
   private
   public :: error_t, make_error
   public :: exit_ok, exit_usage, exit_deck, exit_model, exit_no_convergence, exit_solver
-  public :: exit_lost_point, exit_expectation, exit_file
+  public :: exit_lost_point, exit_expectation, exit_file, exit_interrupted, exit_terminated
 
   integer, parameter :: exit_ok = 0             !! finished, every *EXPECT met
   integer, parameter :: exit_usage = 1          !! wrong command line
@@ -15,6 +15,8 @@ module mpm_error
   integer, parameter :: exit_lost_point = 6     !! a material point was lost
   integer, parameter :: exit_expectation = 7    !! finished, but an *EXPECT failed
   integer, parameter :: exit_file = 8           !! file or HDF5 error
+  integer, parameter :: exit_interrupted = 130  !! ended by SIGINT or JOB.stop, restart written
+  integer, parameter :: exit_terminated = 143   !! ended by SIGTERM, restart written
 
   !> A failure on its way up to the main program. Unallocated means success.
   type :: error_t

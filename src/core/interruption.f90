@@ -1,0 +1,69 @@
+!> Signals that ask the program to end: noted when they come, obeyed where the work can be left.
+!!
+!! A handler has no arguments of ours, so that what it notes must be a variable of the module.
+module mpm_interruption
+  use, intrinsic :: iso_c_binding, only: c_associated, c_funloc, c_funptr, c_int, c_intptr_t
+  implicit none
+  private
+  public :: catch_signals, forget_signal, received_signal, signal_interrupt, signal_terminate
+
+  integer, parameter :: signal_interrupt = 2  !! SIGINT
+  integer, parameter :: signal_terminate = 15 !! SIGTERM
+  integer, parameter :: exit_of_signal = 128  !! added to the signal: exit code, as shells do
+
+  integer(c_int), volatile, save :: received = 0_c_int !! the last one, 0 if none
+
+  interface
+    !> Sets what happens at a signal.
+    function c_signal(number, action) bind(c, name="signal") result(previous)
+      import :: c_funptr, c_int
+      implicit none
+      integer(c_int), value :: number
+      type(c_funptr), value :: action
+      type(c_funptr) :: previous
+    end function c_signal
+
+    !> Ends the process at once; may be called by a handler.
+    subroutine c_exit_now(code) bind(c, name="_exit")
+      import :: c_int
+      implicit none
+      integer(c_int), value :: code
+    end subroutine c_exit_now
+  end interface
+
+contains
+
+  !> From now on SIGINT and SIGTERM are noted. A SIGINT that the program was started to ignore, as
+  !! shells do for work in the background, stays ignored.
+  subroutine catch_signals()
+    type(c_funptr) :: previous
+    integer(c_intptr_t), parameter :: ignore = 1_c_intptr_t ! SIG_IGN
+
+    received = 0_c_int
+    previous = c_signal(int(signal_interrupt, c_int), c_funloc(note_signal))
+    if (transfer(previous, ignore) == ignore) then
+      previous = c_signal(int(signal_interrupt, c_int), previous)
+    end if
+    previous = c_signal(int(signal_terminate, c_int), c_funloc(note_signal))
+    if (.not. c_associated(previous)) return ! it had its default action
+  end subroutine catch_signals
+
+  !> Notes a signal; the second one ends the program at once. Called by the system.
+  subroutine note_signal(number) bind(c)
+    integer(c_int), value :: number !! signal
+
+    if (received /= 0_c_int) call c_exit_now(int(exit_of_signal, c_int) + number)
+    received = number
+  end subroutine note_signal
+
+  !> The signal that came, 0 if none did.
+  integer function received_signal() result(number)
+    number = int(received)
+  end function received_signal
+
+  !> Forgets a signal that was obeyed.
+  subroutine forget_signal()
+    received = 0_c_int
+  end subroutine forget_signal
+
+end module mpm_interruption
