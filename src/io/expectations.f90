@@ -12,7 +12,7 @@ module mpm_expectations
   implicit none
   private
   public :: verdict_t, collect_expectations, evaluate_expectations, expectation_times
-  public :: is_expected, n_failed_expectations, verdict_line
+  public :: is_expected, judge, n_failed_expectations, subject_of, verdict_line
 
   character(*), parameter :: quantity_share = "GHOST SHARE" !! a number of the run
   real(dp), parameter :: time_tolerance = 1.0e-9_dp !! relative
@@ -79,12 +79,20 @@ contains
     do i = 1, size(verdicts)
       associate (verdict => verdicts(i))
         if (verdict%reached .or. .not. same_time(verdict%expected%time, state%time)) cycle
-        verdict%reached = .true.
-        verdict%found = value_of_run(verdict%expected, points, patches, state)
-        verdict%met = abs(verdict%found - verdict%expected%value) <= tolerance_of(verdict%expected)
+        call judge(verdict, value_of_run(verdict%expected, points, patches, state))
       end associate
     end do
   end subroutine evaluate_expectations
+
+  !> Decides an expectation.
+  pure subroutine judge(verdict, found)
+    type(verdict_t), intent(inout) :: verdict !! is decided
+    real(dp), intent(in) :: found             !! value of the run
+
+    verdict%reached = .true.
+    verdict%found = found
+    verdict%met = abs(found - verdict%expected%value) <= tolerance_of(verdict%expected)
+  end subroutine judge
 
   !> Whether a time is that of an increment.
   pure function same_time(expected, now) result(same)
