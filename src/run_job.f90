@@ -3,16 +3,21 @@ module mpm_run_job
   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
   use mpm_command_line, only: command_line_t
   use mpm_deck_card, only: deck_t, folder_of
+  use mpm_deck_signature, only: deck_signature
   use mpm_diagnostics, only: diagnostics_t, to_error, warnings_text
   use mpm_error, only: error_t, exit_deck, exit_expectation, exit_ok
   use mpm_expectations, only: n_failed_expectations, verdict_line
   use mpm_external_force, only: prepare_loads
   use mpm_increments, only: begin_step, schedule_t, start_increment
   use mpm_input_deck, only: read_deck
+  use mpm_interruption, only: catch_signals
   use mpm_kinds, only: dp
   use mpm_log_model, only: model_text
   use mpm_model, only: formulation_fbar, formulation_standard, model_t
   use mpm_model_builder, only: build_model
+  use mpm_restart_load, only: load_restart
+  use mpm_restart_point, only: place_text
+  use mpm_restart_state, only: restart_t
   use mpm_result_paths, only: existing_results, make_folder, result_paths, result_paths_t
   use mpm_run_log, only: log_message
   use mpm_run_output, only: close_output, open_output, run_output_t
@@ -51,11 +56,11 @@ contains
     do i = 1, size(formulation)
       variant = model
       info%formulation = formulation_name(formulation(i))
-      call choose_formulation(variant, formulation(i), size(formulation) > 1)
+      call choose_formulation(variant, formulation(i), size(options%compare) > 0)
       if (options%check_tangent) then
         call run_tangent_check(code, variant, error)
       else
-        call run_formulation(code, variant, info, options, error)
+        call run_formulation(code, variant, deck, info, options, error)
       end if
       if (allocated(error)) return
       exit_code = max(exit_code, code)
@@ -125,19 +130,33 @@ contains
   end function formulation_name
 
   !> One run with all its files.
-  subroutine run_formulation(exit_code, model, info, options, error)
+  subroutine run_formulation(exit_code, model, deck, info, options, error)
     integer, intent(out)          :: exit_code
     type(model_t), intent(inout)  :: model
+    type(deck_t), intent(in)      :: deck
     type(run_info_t), intent(in)  :: info
     type(command_line_t), intent(in) :: options
     type(error_t), allocatable, intent(out) :: error
     type(result_paths_t) :: paths
     type(run_output_t)   :: output
     type(run_state_t)    :: state
+    type(restart_t)      :: restart
     type(error_t), allocatable :: failure
     character(:), allocatable  :: folder
 
     exit_code = exit_ok
+    if (len(options%restart) > 0) then
+      call load_restart(restart, options%restart, deck, model, info%formulation, error)
+      if (allocated(error)) return
+      if (options%check) then
+        write (output_unit, "(a)") model%job//": restart file "//options%restart// &
+          " belongs to this deck, "//place_text(restart)
+        return
+      end if
+    end if
+    restart%deck_signature = deck_signature(deck)
+    restart%formulation = info%formulation
+    restart%written_by = info%version//" "//info%git
     folder = options%output
     if (len(folder) == 0) folder = folder_of(options%deck)
     call make_folder(folder, error)
@@ -147,7 +166,8 @@ contains
     if (allocated(error)) return
     call open_output(output, paths, model, info, error)
     if (allocated(error)) return
-    call solve_job(output, state, model, options%check, failure)
+    call catch_signals()
+    call solve_job(output, state, model, restart, options%check, failure)
     if (allocated(failure)) then
       exit_code = failure%code
       call log_message(output%log, failure%message, error)

@@ -1,22 +1,29 @@
 !> The analysis of a job: increments of equilibrium from the first step to the last.
 module mpm_solve_job
   use mpm_amplitude, only: time_increment_t
+  use mpm_analysis_run, only: analysis_t, wall_time
   use mpm_dof_map, only: number_dofs, start_where_nodes_stand, turn_prescribed
-  use mpm_equilibrium, only: find_equilibrium, newton_report_t, outcome_converged
-  use mpm_error, only: error_t, exit_solver, make_error
+  use mpm_equilibrium, only: find_equilibrium, newton_report_t, outcome_converged, &
+                             outcome_interrupted
+  use mpm_error, only: error_t, exit_model, exit_no_convergence, exit_solver, make_error
   use mpm_external_force, only: check_applied, external_force, prepare_loads
   use mpm_geostatic_step, only: report_move
   use mpm_ghost_penalty, only: build_ghost, ghost_share
   use mpm_increment_work, only: reference_work
   use mpm_increments, only: accept_step, begin_step, schedule_t, start_increment
-  use mpm_kinds, only: dp, ip
+  use mpm_kinds, only: dp
   use mpm_linear_solver, only: analyse, solver_memory, solver_ok
   use mpm_mesh_layout, only: lay_out_mesh
   use mpm_model, only: formulation_fbar, formulation_standard, model_t
+  use mpm_model_signature, only: model_signature
   use mpm_nodal_frames, only: part_along
   use mpm_patches, only: patches_of_single_elements
-  use mpm_point_location, only: locate_points, location_report_t, locator_t, lost_is_error
+  use mpm_point_location, only: locate_points, location_report_t, lost_is_error
   use mpm_point_update, only: accept_points
+  use mpm_restart_load, only: restore_point
+  use mpm_restart_output, only: restore_output
+  use mpm_restart_point, only: keep_point, obey_requests, save_point
+  use mpm_restart_state, only: restart_t
   use mpm_run_failure, only: check_count, place_of, report_lost_point, shorten
   use mpm_run_output, only: run_output_t, write_attempt, write_increment, write_last_state
   use mpm_run_state, only: make_run_state, note_checkerboard, note_constraints, run_state_t
@@ -28,75 +35,113 @@ module mpm_solve_job
   private
   public :: make_body, prepare_increment, solve_job
 
-  !> What an analysis carries from increment to increment.
-  type :: analysis_t
-    type(body_t)     :: body
-    type(system_t)   :: system
-    type(schedule_t) :: schedule
-    type(locator_t)  :: locator
-  end type analysis_t
-
 contains
 
   !> Solves all steps of a model and hands every attempt and every increment to the output.
-  subroutine solve_job(output, state, model, only_check, error)
+  subroutine solve_job(output, state, model, restart, only_check, error)
     type(run_output_t), intent(inout) :: output        !! open
     type(run_state_t), intent(out)    :: state         !! after the last accepted increment
     type(model_t), intent(inout)      :: model         !! at time zero; its conditions are prepared
+    type(restart_t), intent(inout)    :: restart       !! what run it is, perhaps loaded; emptied
     logical, intent(in)               :: only_check    !! write increment 0, do not solve
     type(error_t), allocatable, intent(out) :: error   !! no convergence, lost point, file ...
     type(analysis_t) :: analysis
-    integer :: i
+    integer :: i, first
 
     call make_body(analysis%body, model)
+    restart%model_signature = model_signature(model)
     call open_system(analysis%system, analysis%body)
-    call make_run_state(state, model%mesh%n_dim, model%mesh%n_node, model%mesh%n_el, &
-                        model%patches%n)
-    state%started = wall_time()
-    call find_active(analysis%system, analysis%body%points)
-    if (output%metered) call note_checkerboard(state, analysis%body)
-    call write_increment(output, model, analysis%body%mesh, analysis%body%points, state, error)
     do i = 1, size(model%step)
       call prepare_loads(model%step(i)%load, model%mesh, model%points)
     end do
-    do i = 1, size(model%step)
+    call begin_run(analysis, output, state, model, restart, error)
+    first = max(1, analysis%schedule%step)
+    do i = first, size(model%step)
       if (allocated(error) .or. only_check) exit
-      call start_where_nodes_stand(model%step(i)%constraint, model%frames, state%node_u)
-      call begin_step(analysis%schedule, i, model%step(i)%schedule, &
-                      stop_times(model, i, analysis%schedule%total_time))
+      if (i > analysis%schedule%step) then
+        call start_where_nodes_stand(model%step(i)%constraint, model%frames, state%node_u)
+        call begin_step(analysis%schedule, i, model%step(i)%schedule, &
+                        stop_times(model, i, analysis%schedule%total_time))
+        analysis%u_start = analysis%body%points%u
+      end if
       call solve_step(analysis, output, state, model, error)
     end do
-    if (allocated(error)) call keep_last_state(output, state, model, analysis%body, &
-                                               analysis%schedule)
+    if (allocated(error)) call keep_last_state(analysis, output, state, model, error%code)
     call free_system(analysis%system)
   end subroutine solve_job
 
-  !> Before a run ends early: the fields of the last accepted increment. The failure that ends the
-  !! run is the one to tell; one more while saving is not.
-  subroutine keep_last_state(output, state, model, body, schedule)
+  !> The run at time zero, or where its restart file was written.
+  subroutine begin_run(analysis, output, state, model, restart, error)
+    type(analysis_t), intent(inout)   :: analysis !! body at time zero, system open
+    type(run_output_t), intent(inout) :: output   !! open
+    type(run_state_t), intent(out)    :: state
+    type(model_t), intent(in)         :: model
+    type(restart_t), intent(inout)    :: restart  !! perhaps loaded
+    type(error_t), allocatable, intent(out) :: error
+    logical :: loaded
+
+    loaded = restart%is_loaded
+    analysis%kept = restart
+    analysis%last_written = wall_time()
+    if (loaded) then
+      call restore_output(output, restart, model, error)
+      if (allocated(error)) return
+      call restore_point(analysis, state, model, stops_of_restart(restart, model), error)
+      if (allocated(error)) return
+    else
+      call make_run_state(state, model%mesh%n_dim, model%mesh%n_node, model%mesh%n_el, &
+                          model%patches%n)
+      state%started = wall_time()
+      analysis%u_start = analysis%body%points%u
+    end if
+    call find_active(analysis%system, analysis%body%points)
+    if (output%metered .and. .not. loaded) call note_checkerboard(state, analysis%body)
+    if (.not. output%is_resumed) then
+      call write_increment(output, model, analysis%body%mesh, analysis%body%points, state, error)
+    end if
+    call keep_point(analysis, output, state)
+  end subroutine begin_run
+
+  !> Step times that increments must hit in the step that a restart goes on in.
+  pure function stops_of_restart(restart, model) result(times)
+    type(restart_t), intent(in) :: restart
+    type(model_t), intent(in) :: model
+    real(dp), allocatable :: times(:)
+
+    times = [real(dp) ::]
+    if (restart%schedule%step > 0) then
+      times = stop_times(model, restart%schedule%step, restart%schedule%total_start)
+    end if
+  end function stops_of_restart
+
+  !> Before a run ends early: a restart file and the fields of the last accepted increment. The
+  !! failure that ends the run is the one to tell; one more while saving is not.
+  subroutine keep_last_state(analysis, output, state, model, code)
+    type(analysis_t), intent(inout)   :: analysis
     type(run_output_t), intent(inout) :: output
     type(run_state_t), intent(inout)  :: state    !! back at the last accepted increment
-    type(model_t), intent(in)         :: model
-    type(body_t), intent(in)          :: body
-    type(schedule_t), intent(in)      :: schedule
+    type(model_t), intent(inout)      :: model    !! not changed
+    integer, intent(in)               :: code     !! exit code of the failure
     type(error_t), allocatable :: ignored
 
-    state%time = schedule%total_time
-    state%step_time = schedule%step_time
-    call write_last_state(output, model, body%mesh, body%points, state, ignored)
+    state%time = analysis%schedule%total_time
+    state%step_time = analysis%schedule%step_time
+    ! After other failures the points may have moved on, or nothing can be written.
+    if (any(code == [exit_model, exit_no_convergence, exit_solver])) then
+      call save_point(analysis, output, model, ignored)
+    end if
+    call write_last_state(output, model, analysis%body%mesh, analysis%body%points, state, ignored)
   end subroutine keep_last_state
 
   !> The increments of one step: the algorithm.
   subroutine solve_step(analysis, output, state, model, error)
-    type(analysis_t), intent(inout)   :: analysis !! at the start of the step
+    type(analysis_t), intent(inout)   :: analysis !! in the step
     type(run_output_t), intent(inout) :: output
     type(run_state_t), intent(inout)  :: state
-    type(model_t), intent(in)         :: model
+    type(model_t), intent(inout)      :: model    !! not changed
     type(error_t), allocatable, intent(out) :: error
     type(newton_report_t) :: report
-    real(dp), allocatable :: u_start(:, :)
 
-    u_start = analysis%body%points%u
     associate (body => analysis%body, system => analysis%system, schedule => analysis%schedule)
       do while (.not. schedule%finished)
         call start_increment(schedule) ! size from the last outcome
@@ -110,7 +155,10 @@ contains
         if (report%outcome == outcome_converged) call note_equilibrium(state, system, body, model)
         call write_attempt(output, state, report, error)
         if (allocated(error)) return
-        if (report%outcome /= outcome_converged) then
+        if (report%outcome == outcome_interrupted) then
+          call obey_requests(analysis, output, model, error)
+          return
+        else if (report%outcome /= outcome_converged) then
           call shorten(schedule, report, model, error)
           if (allocated(error)) return
           cycle
@@ -118,7 +166,7 @@ contains
         call close_increment(analysis, output, state, model, report%n_iterations, error)
         if (allocated(error)) return
       end do
-      call report_move(output%log, model%step(schedule%step), body%points, u_start, error)
+      call report_move(output%log, model%step(schedule%step), body%points, analysis%u_start, error)
     end associate
   end subroutine solve_step
 
@@ -128,7 +176,7 @@ contains
     type(analysis_t), intent(inout)   :: analysis
     type(run_output_t), intent(inout) :: output
     type(run_state_t), intent(inout)  :: state
-    type(model_t), intent(in)         :: model
+    type(model_t), intent(inout)      :: model        !! not changed
     integer, intent(in)               :: n_iterations !! of the increment
     type(error_t), allocatable, intent(out) :: error  !! lost point, inverted mesh, file, too many
     type(location_report_t) :: location
@@ -154,8 +202,10 @@ contains
         call report_lost_point(error, body, location, model, schedule)
         return
       end if
+      call keep_point(analysis, output, state)
       call check_count(schedule, model, error)
     end associate
+    if (.not. allocated(error)) call obey_requests(analysis, output, model, error)
   end subroutine close_increment
 
   !> The body at time zero; with the standard formulation every element is its own patch.
@@ -251,15 +301,6 @@ contains
     if (body%ghost_gamma > 0.0_dp) state%n_ghost_pairs = system%ghost%pairs%n
     state%wall_seconds = wall_time() - state%started
   end subroutine note_attempt
-
-  !> Seconds of the system's clock.
-  function wall_time() result(seconds)
-    real(dp) :: seconds !! [s]
-    integer(ip) :: ticks, rate
-
-    call system_clock(ticks, rate)
-    seconds = real(ticks, dp)/real(rate, dp)
-  end function wall_time
 
   !> Forces and displacements of the converged increment.
   subroutine note_equilibrium(state, system, body, model)

@@ -917,17 +917,6 @@ job.inp:15:25: error: ELSET of *MATERIAL POINTS is '"ALL, MATERIAL=CLAY, PER ELE
 """),
     ),
     Case(
-        "keyword_of_later_version",
-        PLANE,
-        [("*BOUNDARY\n", "*RESTART, WRITE\n*BOUNDARY\n")],
-        2,
-        text("""
-job.inp:19:1: error: *RESTART is not available in this version: expected a keyword of tessera --schema
-   19 | *RESTART, WRITE
-      | ^~~~~~~~
-"""),
-    ),
-    Case(
         "unknown_keyword_far_from_all",
         PLANE,
         [("*BOUNDARY\n", "*FLUX CAPACITOR\n*BOUNDARY\n")],

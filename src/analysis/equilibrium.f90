@@ -4,6 +4,7 @@ module mpm_equilibrium
   use mpm_dof_map, only: add_solution, gather_free
   use mpm_eigenvalues, only: eigenvalues_t, find_eigenvalues
   use mpm_ghost_penalty, only: add_ghost_force, add_ghost_tangent
+  use mpm_interruption, only: received_signal
   use mpm_kinds, only: dp
   use mpm_linear_solver, only: factorize, solve, solver_memory, solver_ok
   use mpm_nodal_frames, only: in_local_axes, part_along
@@ -13,7 +14,7 @@ module mpm_equilibrium
   public :: find_equilibrium, outcome_text
   public :: newton_settings_t, newton_report_t
   public :: outcome_converged, outcome_inverted, outcome_material, outcome_stagnated
-  public :: outcome_iterations, outcome_singular, outcome_memory
+  public :: outcome_iterations, outcome_singular, outcome_memory, outcome_interrupted
 
   integer, parameter :: outcome_converged = 0  !! equilibrium found
   integer, parameter :: outcome_inverted = 1   !! an active element turned inside out
@@ -22,6 +23,7 @@ module mpm_equilibrium
   integer, parameter :: outcome_iterations = 4 !! too many iterations
   integer, parameter :: outcome_singular = 5   !! tangent singular
   integer, parameter :: outcome_memory = 6     !! linear solver out of memory
+  integer, parameter :: outcome_interrupted = 7 !! a signal asks to end
 
   !> Controls of Newton's method (*CONTROLS).
   type :: newton_settings_t
@@ -78,6 +80,7 @@ contains
       if (report%outcome /= outcome_converged) exit
       if (report%residual(iteration) <= settings%tolerance) exit
       if (iteration == settings%max_iterations) report%outcome = outcome_iterations
+      if (received_signal() /= 0) report%outcome = outcome_interrupted
     end do
     if (report%outcome == outcome_converged .and. settings%eigenvalues) then
       call find_eigenvalues(report%eigenvalues, system%solver, system%tangent)
@@ -266,6 +269,7 @@ contains
     case (outcome_iterations); text = "too many iterations"
     case (outcome_singular); text = "the tangent is singular"
     case (outcome_memory); text = "the linear solver ran out of memory"
+    case (outcome_interrupted); text = "interrupted"
     case default; text = "unknown outcome"
     end select
   end function outcome_text

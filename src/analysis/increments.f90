@@ -4,7 +4,7 @@ module mpm_increments
   implicit none
   private
   public :: schedule_settings_t, schedule_t
-  public :: accept_step, begin_step, cut_back, start_increment
+  public :: accept_step, begin_step, cut_back, resume_step, start_increment
 
   !> *STATIC and the INC of *STEP.
   type :: schedule_settings_t
@@ -25,6 +25,7 @@ module mpm_increments
     integer  :: attempt = 0          !! attempt at this increment, from 1
     real(dp) :: step_time = 0.0_dp   !! at the start of the increment
     real(dp) :: total_time = 0.0_dp  !! at the start of the increment
+    real(dp) :: total_start = 0.0_dp !! total time at the start of the step
     real(dp) :: size = 0.0_dp        !! size of the increment
     real(dp) :: planned = 0.0_dp     !! size before it was shortened to hit a stop
     real(dp), allocatable :: stop_time(:) !! step times that must be hit, ascending, the last one is the period
@@ -46,11 +47,23 @@ contains
     schedule%increment = 0
     schedule%attempt = 0
     schedule%step_time = 0.0_dp
+    schedule%total_start = schedule%total_time
     schedule%n_cuts = 0
     schedule%finished = .false.
     schedule%planned = min(settings%initial, settings%period)
     call sort_stops(schedule, stop_time)
   end subroutine begin_step
+
+  !> Goes on in a step with the settings that it has now.
+  pure subroutine resume_step(schedule, settings, stop_time)
+    type(schedule_t), intent(inout) :: schedule         !! after an accepted increment
+    type(schedule_settings_t), intent(in) :: settings   !! of the same period
+    real(dp), intent(in) :: stop_time(:)                !! step times to be hit, in any order, with repeats
+
+    schedule%settings = settings
+    schedule%planned = min(max(schedule%planned, settings%minimum), settings%maximum)
+    call sort_stops(schedule, stop_time)
+  end subroutine resume_step
 
   !> Keeps the stops inside the step, ascending, unique, closed by the period.
   pure subroutine sort_stops(schedule, stop_time)

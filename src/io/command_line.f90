@@ -13,6 +13,7 @@ module mpm_command_line
   type :: command_line_t
     character(:), allocatable :: deck    !! path of the deck, empty if none is needed
     character(:), allocatable :: output  !! folder of the results, empty = beside the deck
+    character(:), allocatable :: restart !! restart file to go on from, empty = begin anew
     integer :: threads = 0               !! OpenMP threads, 0 = default
     logical :: force = .false.           !! overwrite earlier results
     logical :: check = .false.           !! do not solve
@@ -43,6 +44,7 @@ module mpm_command_line
     option_t(" ", "check", "", "read, build, report, write increment 0, do not solve"), &
     option_t(" ", "check-tangent", "", "compare the tangent with finite differences, then stop"), &
     option_t(" ", "compare", "LIST", "run the formulations of a list, as standard,fbar"), &
+    option_t(" ", "restart", "FILE", "go on from a restart file"), &
     option_t(" ", "lax", "", "only warn of a set, material or amplitude that is not used"), &
     option_t("q", "quiet", "", "no progress"), &
     option_t("v", "verbose", "", "every Newton iteration on the terminal"), &
@@ -50,7 +52,6 @@ module mpm_command_line
     option_t(" ", "version", "", "print version, compiler and libraries"), &
     option_t("h", "help", "", "print this help"), &
     option_t(" ", "estimate", "", "memory and time of one factorisation", .true.), &
-    option_t(" ", "restart", "FILE", "go on from a restart file", .true.), &
     option_t(" ", "max-memory", "GB", "refuse to start above this", .true.)]
 
 contains
@@ -82,6 +83,7 @@ contains
 
     options%deck = ""
     options%output = ""
+    options%restart = ""
     allocate (options%compare(0))
     only_files = .false.
     i = 1
@@ -238,6 +240,10 @@ contains
       call check_first(len(options%output) == 0, name, error)
       if (len(value) == 0) call usage_error(error, "--output is empty: expected a folder")
       options%output = value
+    case ("restart")
+      call check_first(len(options%restart) == 0, name, error)
+      if (len(value) == 0) call usage_error(error, "--restart is empty: expected a restart file")
+      options%restart = value
     case ("threads")
       call check_first(options%threads == 0, name, error)
       if (allocated(error)) return
@@ -269,7 +275,7 @@ contains
   pure subroutine set_formulations(options, value, error)
     type(command_line_t), intent(inout) :: options   !! gets the formulations
     character(*), intent(in) :: value                !! names between commas
-    type(error_t), allocatable, intent(out) :: error !! unknown name, or not two of them
+    type(error_t), allocatable, intent(out) :: error !! unknown name, or one twice
     integer, allocatable :: compare(:)
     integer :: first, last
 
@@ -287,8 +293,9 @@ contains
       end select
       first = last + 2
     end do
-    if (size(compare) /= 2 .or. any(compare == 0) .or. all(compare == compare(1))) &
-      call usage_error(error, "--compare is '"//value//"': expected standard,fbar")
+    if (size(compare) > 2 .or. any(compare == 0) .or. &
+        (size(compare) == 2 .and. all(compare == compare(1)))) &
+      call usage_error(error, "--compare is '"//value//"': expected standard,fbar or one of them")
     call move_alloc(compare, options%compare)
   end subroutine set_formulations
 
@@ -305,6 +312,10 @@ contains
       call usage_error(error, "--quiet and --verbose: expected one of them")
     else if (options%check .and. options%check_tangent) then
       call usage_error(error, "--check and --check-tangent: expected one of them")
+    else if (len(options%restart) > 0 .and. options%check_tangent) then
+      call usage_error(error, "--restart and --check-tangent: expected one of them")
+    else if (len(options%restart) > 0 .and. size(options%compare) > 1) then
+      call usage_error(error, "--restart goes on with one run: expected one formulation in --compare")
     end if
   end subroutine check_options
 

@@ -7,9 +7,7 @@ module mpm_deck_schema
   use mpm_text, only: nearest_word
   implicit none
   private
-  public :: build_schema, find_keyword, keyword_hint, is_later_keyword
-
-  character(18), parameter :: later_keyword(1) = [character(18) :: "RESTART"]
+  public :: build_schema, find_keyword, keyword_hint
 
 contains
 
@@ -31,13 +29,6 @@ contains
       if (schema%keyword(find_keyword)%keyword == keyword) return
     end do
   end function find_keyword
-
-  !> Whether a keyword is planned, but not in this version.
-  pure logical function is_later_keyword(keyword)
-    character(*), intent(in) :: keyword !! canonical name
-
-    is_later_keyword = any(later_keyword == keyword)
-  end function is_later_keyword
 
   !> `did you mean '*NODE'?`, empty if no keyword is close.
   pure function keyword_hint(schema, keyword) result(hint)

@@ -1,7 +1,7 @@
 !> The cards of a deck against the schema: known, at the right place, complete.
 module mpm_deck_schema_check
   use mpm_deck_card, only: deck_t, parameter_text
-  use mpm_deck_schema, only: find_keyword, is_later_keyword, keyword_hint
+  use mpm_deck_schema, only: find_keyword, keyword_hint
   use mpm_deck_schema_lines, only: check_lines
   use mpm_deck_schema_parameters, only: check_card_parameters
   use mpm_deck_schema_rule, only: in_both, in_model, in_step, keyword_rule_t, once_in_deck, &
@@ -69,12 +69,6 @@ contains
     type(diagnostics_t), intent(inout) :: diag   !! gets the error
     character(:), allocatable :: hint, name
 
-    name = deck%card(i_card)%keyword
-    if (is_later_keyword(name)) then
-      call error_at_keyword(diag, deck, i_card, "*"//name//" is not available in this version: "// &
-                            "expected a keyword of tessera --schema")
-      return
-    end if
     associate (head => deck%card(i_card)%head)
       name = head%text(head%field(1)%first:head%field(1)%last)
     end associate

@@ -23,6 +23,7 @@ contains
     call add_surface_load(schema)
     call add_output(schema)
     call add_history(schema)
+    call add_restart(schema)
     call add_expectation(schema)
     call add_keyword(schema, "END STEP", "step", in_step, once_never, "Ends a step.")
   end subroutine add_step_keywords
@@ -212,6 +213,18 @@ contains
     call add_field(schema, value_rule_t("quantity", value_choice, choices="RF|U", &
                                         meaning="sum of reactions, mean displacement"))
   end subroutine add_history
+
+  !> *RESTART.
+  pure subroutine add_restart(schema)
+    type(schema_t), intent(inout) :: schema !! gets the keyword
+
+    call add_keyword(schema, "RESTART", "output", in_step, once_in_scope, &
+                     "When a restart file is written; without: every 10 minutes.")
+    call add_parameter(schema, value_rule_t("WRITE", value_flag, meaning="restart files"))
+    call add_parameter(schema, value_rule_t("FREQUENCY", value_integer, required=.false., &
+                                            range=">= 0", default="1", &
+                                            meaning="every so many increments; 0 = the last"))
+  end subroutine add_restart
 
   !> *EXPECT.
   pure subroutine add_expectation(schema)

@@ -19,9 +19,11 @@ module mpm_model
   private
   public :: model_t, step_t, field_output_t, history_request_t, expectation_t
   public :: formulation_standard, formulation_fbar, history_of_nodes, history_of_point
+  public :: restart_by_clock
 
   integer, parameter :: formulation_standard = 1 !! dFbar = dF
   integer, parameter :: formulation_fbar = 2     !! F-bar patch
+  integer, parameter :: restart_by_clock = -1    !! no *RESTART: when time has passed
   integer, parameter :: history_of_nodes = 1     !! *HISTORY, NSET= or SURFACE=
   integer, parameter :: history_of_point = 2     !! *HISTORY, POINT=
 
@@ -71,6 +73,7 @@ module mpm_model
     type(load_t), allocatable       :: load(:)
     type(field_output_t)            :: field_output
     logical                         :: has_field_output = .false.
+    integer                         :: restart_frequency = restart_by_clock !! of *RESTART
     type(history_request_t), allocatable :: history(:)
     type(expectation_t), allocatable     :: expectation(:)
     integer :: card = 0

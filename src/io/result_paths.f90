@@ -14,6 +14,10 @@ module mpm_result_paths
     character(:), allocatable :: history !! JOB_history.csv
     character(:), allocatable :: points  !! JOB.vtkhdf
     character(:), allocatable :: mesh    !! JOB_mesh.vtkhdf
+    character(:), allocatable :: restart !! JOB.restart.h5
+    character(:), allocatable :: previous_restart !! JOB.restart.1.h5
+    character(:), allocatable :: stop_request     !! JOB.stop, made by the user
+    character(:), allocatable :: restart_request  !! JOB.restart, made by the user
   end type result_paths_t
 
   interface
@@ -67,6 +71,10 @@ contains
     paths%history = stem//"_history.csv"
     paths%points = stem//".vtkhdf"
     paths%mesh = stem//"_mesh.vtkhdf"
+    paths%restart = stem//".restart.h5"
+    paths%previous_restart = stem//".restart.1.h5"
+    paths%stop_request = stem//".stop"
+    paths%restart_request = stem//".restart"
   end function result_paths
 
   !> Refuses to go on when a file of an earlier run is there.
@@ -79,6 +87,7 @@ contains
     if (.not. allocated(error)) call refuse_existing(paths%history, error)
     if (.not. allocated(error)) call refuse_existing(paths%points, error)
     if (.not. allocated(error)) call refuse_existing(paths%mesh, error)
+    if (.not. allocated(error)) call refuse_existing(paths%restart, error)
   end subroutine existing_results
 
   !> Reports a file that exists.

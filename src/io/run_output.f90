@@ -39,7 +39,9 @@ module mpm_run_output
     type(verdict_t), allocatable :: verdict(:)       !! of *EXPECT
     logical :: quiet = .false.                       !! no progress on stderr
     logical :: verbose = .false.                     !! every Newton iteration on stderr
+    logical :: is_resumed = .false.                  !! the files of an interrupted run go on
     logical :: metered = .false.                     !! log or deck ask for the locking meter
+    type(result_paths_t) :: paths                    !! of all files
     integer :: n_shown = -1                          !! accepted increments at the last field output
   end type run_output_t
 
@@ -54,6 +56,7 @@ contains
     type(error_t), allocatable, intent(out) :: error !! exit_file
 
     call ignore_size_signal()
+    output%paths = paths
     output%quiet = info%quiet
     output%verbose = info%verbose
     output%column = history_columns(model)
@@ -120,7 +123,7 @@ contains
                        error)
     if (allocated(error)) return
     call evaluate_expectations(output%verdict, points, model%patches, state)
-    due = state%step == 0
+    due = state%step == 0 .or. output%n_shown < 0 ! the first one, also after a restart
     if (.not. due) due = is_field_output_due(model%step(state%step), state)
     if (due) then
       output%n_shown = state%increment_total

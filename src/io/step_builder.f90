@@ -118,6 +118,7 @@ contains
     step%field_output = model%step(n - 1)%field_output
     step%history = model%step(n - 1)%history
     step%newton = model%step(n - 1)%newton
+    step%restart_frequency = model%step(n - 1)%restart_frequency
   end subroutine open_step
 
   !> *STATIC or *GEOSTATIC; without its data line one increment of size 1.
@@ -217,6 +218,8 @@ contains
       case ("OUTPUT")
         step%has_field_output = .true.
         call build_field_output(step%field_output, deck, context, i)
+      case ("RESTART")
+        step%restart_frequency = parameter_integer(deck%card(i), "FREQUENCY", 1)
       case ("HISTORY")
         call build_history(request, model, deck, context, i)
         step%history = [step%history, request]

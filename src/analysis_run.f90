@@ -1,0 +1,36 @@
+!> What an analysis carries from increment to increment.
+module mpm_analysis_run
+  use mpm_increments, only: schedule_t
+  use mpm_kinds, only: dp, ip
+  use mpm_point_location, only: locator_t
+  use mpm_restart_state, only: restart_t
+  use mpm_system, only: body_t, system_t
+  implicit none
+  private
+  public :: analysis_t, wall_time
+
+  !> The body, the work space of an increment, and the last state to go on from.
+  type :: analysis_t
+    type(body_t)     :: body
+    type(system_t)   :: system
+    type(schedule_t) :: schedule
+    type(locator_t)  :: locator
+    type(restart_t)  :: kept                  !! the run after the last accepted increment, without
+                                              !! mesh and points, which change in none but that
+    real(dp), allocatable :: u_start(:, :)    !! (n_dim, n)  displacements of the points at the
+                                              !!             start of the step [length]
+    real(dp) :: last_written = 0.0_dp         !! wall time of the last restart file [s]
+  end type analysis_t
+
+contains
+
+  !> Seconds of the system's clock.
+  function wall_time() result(seconds)
+    real(dp) :: seconds !! [s]
+    integer(ip) :: ticks, rate
+
+    call system_clock(ticks, rate)
+    seconds = real(ticks, dp)/real(rate, dp)
+  end function wall_time
+
+end module mpm_analysis_run
