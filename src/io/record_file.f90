@@ -3,14 +3,13 @@
 !! In front of the HDF5 part stands a line of text per property: what the file is, the version of
 !! its format, length and checksum of everything behind. A file that was cut short or changed by
 !! accident is refused before HDF5 sees it.
-! allow(assumed-size)
 module mpm_record_file
-  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
   use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_trunc_f, h5fclose_f, h5fcreate_f, &
                   h5fopen_f, h5open_f, h5p_default_f, h5p_file_create_f, h5pclose_f, h5pcreate_f, &
                   h5pset_userblock_f, hid_t, hsize_t
   use mpm_checksum, only: checksum_of_text, checksum_text
   use mpm_error, only: error_t, exit_file, make_error
+  use mpm_file_rotation, only: sync_file
   use mpm_hdf5_failure, only: hdf5_failure
   use mpm_kinds, only: ip
   use mpm_text, only: integer_text, parse_integer
@@ -31,33 +30,6 @@ module mpm_record_file
     logical :: is_open = .false.
     logical :: writing = .false.   !! .false.: values are read
   end type record_t
-
-  interface
-    !> Opens a file; < 0 if it cannot be opened.
-    function c_open(path, flags) bind(c, name="open") result(descriptor)
-      import :: c_char, c_int
-      implicit none
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int), value :: flags
-      integer(c_int) :: descriptor
-    end function c_open
-
-    !> Waits until a file is on the disk.
-    function c_fsync(descriptor) bind(c, name="fsync") result(status)
-      import :: c_int
-      implicit none
-      integer(c_int), value :: descriptor
-      integer(c_int) :: status
-    end function c_fsync
-
-    !> Closes a file.
-    function c_close(descriptor) bind(c, name="close") result(status)
-      import :: c_int
-      implicit none
-      integer(c_int), value :: descriptor
-      integer(c_int) :: status
-    end function c_close
-  end interface
 
 contains
 
@@ -144,20 +116,6 @@ contains
     if (status /= 0) call make_error(error, exit_file, "error: cannot write '"//path//"': "// &
                                      trim(reason))
   end subroutine seal_record
-
-  !> Waits until a file is on the disk.
-  subroutine sync_file(path, status)
-    character(*), intent(in) :: path !! file
-    integer, intent(out) :: status   !! not 0: failed
-    integer(c_int), parameter :: read_only = 0_c_int
-    integer(c_int) :: descriptor
-
-    descriptor = c_open(path//c_null_char, read_only)
-    status = 1
-    if (descriptor < 0_c_int) return
-    status = int(c_fsync(descriptor))
-    if (c_close(descriptor) /= 0_c_int) status = 1
-  end subroutine sync_file
 
   !> Compares a file with its seal.
   subroutine check_seal(n_bytes, path, error)
