@@ -26,7 +26,8 @@ module mpm_solve_job
   use mpm_restart_state, only: restart_t
   use mpm_run_failure, only: check_count, place_of, report_lost_point, shorten
   use mpm_run_output, only: run_output_t, write_attempt, write_increment, write_last_state
-  use mpm_run_state, only: make_run_state, note_checkerboard, note_constraints, run_state_t
+  use mpm_run_state, only: make_run_state, note_balance, note_checkerboard, note_constraints, &
+                           run_state_t
   use mpm_sparsity, only: build_pattern, pattern_is_current
   use mpm_surface_points, only: locate_surface_points
   use mpm_system, only: body_t, find_active, free_system, open_system, system_t
@@ -313,6 +314,7 @@ contains
     call note_share(state, system, body) ! before the forces of the start are overwritten
     state%applied = system%f_ext
     state%reaction = part_along(model%frames, system%f_int - system%f_ext, system%dofs%fixed)
+    call note_balance(state, system)
     state%delta_u = system%u
     state%node_u = state%node_u + system%u
     state%delta_j = 1.0_dp

@@ -1809,6 +1809,31 @@ job.inp:28:51: error: GHOST SHARE is one number of the run: expected no STATISTI
 """),
     ),
     Case(
+        "balance_of_a_set",
+        PLANE,
+        [("QUANTITY=U, SET=Y1, COMPONENT=2", "QUANTITY=BALANCE, SET=ALL, STATISTIC=MAX")],
+        2,
+        text("""
+job.inp:27:32: error: BALANCE is one number of the run: expected no SET
+   27 | *EXPECT, QUANTITY=BALANCE, SET=ALL, STATISTIC=MAX
+      |                                ^~~
+job.inp:27:47: error: BALANCE is one number of the run: expected no STATISTIC
+   27 | *EXPECT, QUANTITY=BALANCE, SET=ALL, STATISTIC=MAX
+      |                                               ^~~
+"""),
+    ),
+    Case(
+        "balance_of_a_component",
+        PLANE,
+        [("QUANTITY=U, SET=Y1, COMPONENT=2", "QUANTITY=BALANCE, COMPONENT=2")],
+        2,
+        text("""
+job.inp:27:38: error: BALANCE is a number without components: expected no COMPONENT
+   27 | *EXPECT, QUANTITY=BALANCE, COMPONENT=2
+      |                                      ^
+"""),
+    ),
+    Case(
         "ghost_penalty_twice",
         PLANE,
         [("*MATERIAL, NAME", "*GHOST PENALTY\n*GHOST PENALTY, GAMMA=1\n*MATERIAL, NAME")],

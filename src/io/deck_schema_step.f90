@@ -233,7 +233,7 @@ contains
     call add_keyword(schema, "EXPECT", "proof", in_step, once_never, &
                      "A value that the run must reach; a miss ends it with exit code 7.")
     call add_parameter(schema, value_rule_t("QUANTITY", value_choice, &
-      choices="RF|U|S|TAU|LE|PEEQ|F|J|JBAR|VOL|CHECKERBOARD|GHOST SHARE", &
+      choices="RF|U|S|TAU|LE|PEEQ|F|J|JBAR|VOL|CHECKERBOARD|GHOST SHARE|BALANCE", &
                                             meaning="quantity"))
     call add_parameter(schema, value_rule_t("SET", value_name, required=.false., &
                                             meaning="node or element set; without: all points"))

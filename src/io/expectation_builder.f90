@@ -36,7 +36,7 @@ contains
       call check_component(new, model, deck, context)
       new%set = parameter_text(card, "SET", "")
       select case (new%quantity)
-      case ("CHECKERBOARD", "GHOST SHARE")
+      case ("CHECKERBOARD", "GHOST SHARE", "BALANCE")
         call check_scalar(new, model, deck, context)
       case default
         call find_items(new, model, deck, context)

@@ -15,6 +15,7 @@ module mpm_expectations
   public :: is_expected, judge, n_failed_expectations, subject_of, verdict_line
 
   character(*), parameter :: quantity_share = "GHOST SHARE" !! a number of the run
+  character(*), parameter :: quantity_balance = "BALANCE"   !! a number of the run
   real(dp), parameter :: time_tolerance = 1.0e-9_dp !! relative
 
   !> An expectation and what became of it.
@@ -123,6 +124,8 @@ contains
       value = state%checkerboard
     else if (expected%quantity == quantity_share) then
       value = state%ghost_share
+    else if (expected%quantity == quantity_balance) then
+      value = state%balance
     else if (is_nodal(expected)) then
       value = statistic_of(nodal_values(state, expected%quantity, max(1, expected%component), &
                                         expected%item), expected%statistic)
@@ -236,7 +239,7 @@ contains
     character(:), allocatable :: text
 
     text = expected%quantity
-    if (text == "CHECKERBOARD" .or. text == quantity_share) return
+    if (any(text == [character(12) :: "CHECKERBOARD", quantity_share, quantity_balance])) return
     text = expected%statistic//" "//text
     if (expected%component > 0) text = text//integer_text(expected%component)
     if (allocated(expected%set)) then

@@ -186,6 +186,8 @@ contains
            //" attempts, "//integer_text(log%n_iterations)//" iterations"//line_end &
            //"lost points: "//integer_text(state%n_lost)//", extrapolated " &
            //integer_text(state%n_extrapolated)//line_end//largest_share_text(state) &
+           //"balance of forces: at most "//real_text(state%balance) &
+           //" of them is missing in an increment"//line_end &
            //seconds_text(log, total_cpu) &
            //"wall time: "//real_text(state%wall_seconds)//" s"//line_end &
            //"exit code: "//integer_text(exit_code)

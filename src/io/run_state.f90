@@ -2,6 +2,7 @@
 module mpm_run_state
   use mpm_build_info, only: build_compiler => compiler, build_version => version, compiler_flags, &
                             git_revision, hdf5_version, metis_version, umfpack_version
+  use mpm_force_balance, only: force_imbalance, smallest_force
   use mpm_kinds, only: dp
   use mpm_locking_meter, only: measure_checkerboard, n_active_patches
   use mpm_model, only: model_t
@@ -10,8 +11,8 @@ module mpm_run_state
   implicit none
   private
   public :: run_info_t, run_state_t
-  public :: end_of_run, estimated_time_left, make_run_info, make_run_state, note_checkerboard
-  public :: note_constraints
+  public :: end_of_run, estimated_time_left, make_run_info, make_run_state, note_balance
+  public :: note_checkerboard, note_constraints
 
   !> What stays the same during a run and is no part of the model, or its name in the results.
   type :: run_info_t
@@ -54,6 +55,8 @@ module mpm_run_state
     real(dp) :: eigenvalue(2) = 0.0_dp  !! smallest and largest of the tangent, 0 if not asked for
     real(dp) :: ghost_share_now = 0.0_dp !! part of the load that the ghost penalty carries [-]
     real(dp) :: ghost_share = 0.0_dp    !! largest one of the run so far [-]
+    real(dp) :: balance_now = 0.0_dp    !! forces that do not balance, part of all of them [-]
+    real(dp) :: balance = 0.0_dp        !! largest one of the run so far [-]
     real(dp), allocatable :: reaction(:, :)   !! (n_dim, n_node)  internal minus applied force where
                                               !!                  prescribed, 0 elsewhere [force]
     real(dp), allocatable :: applied(:, :)    !! (n_dim, n_node)  external nodal forces [force]
@@ -90,6 +93,16 @@ contains
     state%n_unknowns = system%dofs%n
     state%n_constraints = n_active_patches(patches, system%element)
   end subroutine note_constraints
+
+  !> Whether reactions and loads of an increment balance. Source: theory.md (15a).
+  pure subroutine note_balance(state, system)
+    type(run_state_t), intent(inout) :: state !! with reactions and loads; takes the imbalance
+    type(system_t), intent(in) :: system      !! solved
+
+    state%balance_now = force_imbalance(state%reaction, state%applied, &
+                                        smallest_force(system%tangent%val, system%u))
+    state%balance = max(state%balance, state%balance_now)
+  end subroutine note_balance
 
   !> Checkerboard index of the state after an increment. Source: theory.md (22b).
   pure subroutine note_checkerboard(state, body)

@@ -20,18 +20,19 @@ module mpm_run_tables
     "attempt", "iteration", "residual", "kinematics", "stress", "assembly", "factorisation", &
     "solve"]
   integer, parameter :: n_iteration_integers = 4 !! leading columns of integers
-  character(13), parameter :: ledger_columns(13) = [character(13) :: "step", "increment", "time", &
+  character(13), parameter :: ledger_columns(14) = [character(13) :: "step", "increment", "time", &
     "count", "mass", "volume", "lost", "extrapolated", "centre", "checkerboard", "ghost_share", &
-    "eigen_min", "eigen_max"]
+    "eigen_min", "eigen_max", "balance"]
   integer, parameter :: column_of_centre = 9
   integer, parameter :: column_of_checkerboard = 10
   integer, parameter :: column_of_share = 11
+  integer, parameter :: column_of_balance = 14
 
   !> The open tables; each column is a dataset.
   type :: run_tables_t
     type(series_t), allocatable :: history(:)    !! step, increment, time, then the *HISTORY ones
     type(series_t), allocatable :: iterations(:) !! (10)
-    type(series_t), allocatable :: ledger(:)     !! (13)
+    type(series_t), allocatable :: ledger(:)     !! (14)
   end type run_tables_t
 
 contains
@@ -190,6 +191,7 @@ contains
     call append_rows(tables%ledger(column_of_share), file, [state%ghost_share_now], error)
     call append_rows(tables%ledger(column_of_share + 1), file, state%eigenvalue(1:1), error)
     call append_rows(tables%ledger(column_of_share + 2), file, state%eigenvalue(2:2), error)
+    call append_rows(tables%ledger(column_of_balance), file, [state%balance_now], error)
   end subroutine append_ledger
 
   !> Closes all tables.
