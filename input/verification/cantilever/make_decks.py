@@ -77,6 +77,8 @@ def deck_text(formulation, per_element, n_depth):
         "frozen, 0, 1E-6",
         "*EXPECT, QUANTITY=U, COMPONENT=2, STATISTIC=MIN",
         "frozen, 0, 1E-6",
+        "*EXPECT, QUANTITY=BALANCE",
+        "analytic, 0.0, 0.0, 1E-8",
         "*END STEP",
     ]
     return "\n".join(lines) + "\n"

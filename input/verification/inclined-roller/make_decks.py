@@ -177,6 +177,7 @@ def deck(case, method, inclined, values):
             text += expectations(
                 values.get(f"{name}-{method}", {}), case["statics"], rotation, n_dim
             )
+            text += "*EXPECT, QUANTITY=BALANCE\nanalytic, 0.0, 0.0, 1E-8\n"
         text += "*END STEP\n"
     write(f"{name}-{method}{'-inclined' if inclined else ''}.inp", text)
 

@@ -314,6 +314,8 @@ def write_decks(family: Family, n_dim: int, exact: dict) -> None:
             for i, leg in enumerate(legs):
                 is_last = i + 1 == len(legs)
                 expected = expectations(states[f"{i + 1}"], scale) if is_last else ""
+                if is_last:
+                    expected += "*EXPECT, QUANTITY=BALANCE\nanalytic, 0.0, 0.0, 1E-8\n"
                 if family in TURNING:
                     expected = "*HISTORY, POINT=0,0\nS\n" + expected
                 text += step_text(leg, motions[i], expected)

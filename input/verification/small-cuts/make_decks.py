@@ -108,6 +108,8 @@ def deck_text(n_dim, formulation, ghost, name, crossing=CROSSING):
         f"analytic, {lift!r}, 1e-12",
         "*EXPECT, QUANTITY=VOL, SET=AIR, STATISTIC=SUM",
         f"analytic, {CROSSED[n_dim] * DEPTHS[name]!r}, 1e-9",
+        "*EXPECT, QUANTITY=BALANCE",
+        "analytic, 0.0, 0.0, 1E-8",
         "*END STEP",
     ]
     return "\n".join(lines) + "\n"

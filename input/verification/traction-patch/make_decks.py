@@ -198,6 +198,8 @@ def exact_deck(load, n_dim, carrier, formulation):
             "*OUTPUT, FIELD, FREQUENCY=0",
             "S, U, F, VOL",
             expectations(load, n_dim, 1e-9),
+            "*EXPECT, QUANTITY=BALANCE",
+            "analytic, 0.0, 0.0, 1E-8",
             "*END STEP\n",
         ]
     )
@@ -233,6 +235,8 @@ def crossing_deck(n_dim, carrier, formulation, per_element, with_ghost=False):
             "*OUTPUT, FIELD, FREQUENCY=0",
             "S, U, VOL",
             *(["*EXPECT, QUANTITY=GHOST SHARE", bound] if with_ghost else []),
+            "*EXPECT, QUANTITY=BALANCE",
+            "analytic, 0.0, 0.0, 1E-8",
             "*END STEP\n",
         ]
     )
