@@ -1,6 +1,8 @@
 """tools/verify: reading of cases, judging, freezing, the page, and the whole of it."""
 
+import dataclasses
 import math
+import re
 import subprocess
 import sys
 
@@ -373,6 +375,29 @@ def test_frozen_line_of_an_include_cannot_have_two_values(case, tmp_path):
     ]
     with pytest.raises(CaseError, match="expected frozen lines in the decks themselves"):
         freeze(judge(case, runs, []))
+
+
+def test_balances_that_hold_are_one_sentence(case, tmp_path):
+    def judged(second, met):
+        options = {"what": "BALANCE", "value": "0", "tolerance": "1e-8"}
+        runs = [
+            finished(tmp_path, verdict(), verdict(found="3e-12", **options)),
+            finished(tmp_path, verdict(found=second, met=met, **options), deck="long.inp"),
+        ]
+        return judge(dataclasses.replace(case, studies=()), runs, [])
+
+    result = judged("2e-10", True)
+    text = "2 decks: at most 2e-10 of all forces is out of balance in any increment"
+    assert f"  {text}" in case_text(result).splitlines()
+    assert f"\nForces, {text}.\n" in page_text([result])
+    assert "BALANCE" not in case_text(result) + page_text([result])
+    # It does not say that the answer is right.
+    claims = "long.inp states nothing: expected *EXPECT or a measure with exact or frozen value"
+    assert claims in result.problems
+    result = judged("2e-7", False)
+    assert "one deck: less than 1e-10 of all forces is out of" in case_text(result)
+    assert re.search(r"long.inp +BALANCE at 1 .*2e-07 .*FAILED", case_text(result))
+    assert "| `long` | BALANCE at 1 | 0 | 2e-07 | **2e-07** | 1e-08 |" in page_text([result])
 
 
 def test_page_shows_every_quantity_and_figure(results, tmp_path):

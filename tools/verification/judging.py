@@ -35,6 +35,11 @@ class Row:
         return self.met is False or self.frozen_met is False
 
     @property
+    def is_balance(self) -> bool:
+        """Whether it is the balance of forces, which every deck claims."""
+        return self.quantity.startswith("BALANCE at ")
+
+    @property
     def error(self) -> float | None:
         """Found less exact, over the exact value unless it is 0: positive when too large."""
         if self.exact is None:
@@ -80,6 +85,16 @@ class CaseResult:
         n_rows = sum(row.failed for row in self.rows)
         return n_rows + sum(study.failed for study in self.studies) + len(self.problems)
 
+    @property
+    def balances(self) -> list[Row]:
+        """Balances of forces as they should be: one sentence tells them all."""
+        return [row for row in self.rows if row.is_balance and not row.failed]
+
+    @property
+    def table_rows(self) -> list[Row]:
+        """All other rows."""
+        return [row for row in self.rows if not row.is_balance or row.failed]
+
 
 def judge(
     case: Case, runs: list[DeckRun], found: Sequence[Found], timed: bool = False
@@ -124,9 +139,11 @@ def problems_of_run(run: DeckRun) -> list[str]:
 
 
 def problems_without_claim(result: CaseResult) -> list[str]:
-    """Runs that could give anything: no row states a value, no study looks at them."""
+    """Runs that could give anything: no row states a value, no study looks at them. That forces
+    balance says nothing about the answer."""
     claimed = {file for study in result.case.studies for file in study.decks}
-    claimed |= {row.deck for row in result.rows if (row.met, row.frozen_met) != (None, None)}
+    rows = [row for row in result.rows if not row.is_balance]
+    claimed |= {row.deck for row in rows if (row.met, row.frozen_met) != (None, None)}
     return [
         f"{run.deck.file} states nothing: expected *EXPECT or a measure with exact or frozen value"
         for run in result.runs

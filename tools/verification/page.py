@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from verification.judging import CaseResult, Row, StudyResult
-from verification.texts import error_text, number_text, order_text
+from verification.texts import balance_text, error_text, number_text, order_text
 
 FIGURES = "figures/verification"  # below docs
 HEAD = Path(__file__).with_name("page_head.md")
@@ -60,7 +60,9 @@ def section(result: CaseResult) -> str:
     text = f"\n## {case.title}\n\n{case.summary}\n[Folder, decks, details](../input/verification/"
     text += f"{case.name}/README.md).\n\n"
     head = ("deck", "quantity", "exact", "computed", "error", "tolerance", "frozen")
-    text += markdown_table(head, [row_cells(row) for row in result.rows])
+    text += markdown_table(head, [row_cells(row) for row in result.table_rows])
+    if result.balances:
+        text += f"\nForces, {balance_text([row.found for row in result.balances])}.\n"
     if result.studies:
         head = ("error of", "sizes", "errors", "order", "at least")
         text += "\n" + markdown_table(head, [study_cells(study) for study in result.studies])

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from verification.judging import CaseResult, Row, StudyResult
-from verification.texts import error_text, number_text, order_text
+from verification.texts import balance_text, error_text, number_text, order_text
 
 HEAD = ("deck", "quantity", "exact", "found", "error", "tolerance", "", "frozen")
 
@@ -11,8 +11,10 @@ HEAD = ("deck", "quantity", "exact", "found", "error", "tolerance", "", "frozen"
 def case_text(result: CaseResult) -> str:
     """Title, rows, studies, what went wrong."""
     lines = [f"{result.case.name}: {result.case.title}"]
-    if result.rows:
-        lines += aligned([HEAD, *(cells_of(row) for row in result.rows)])
+    if result.table_rows:
+        lines += aligned([HEAD, *(cells_of(row) for row in result.table_rows)])
+    if result.balances:
+        lines.append(f"  {balance_text([row.found for row in result.balances])}")
     lines += [f"  {study_text(study)}" for study in result.studies]
     lines += [f"  FAILED: {problem}" for problem in result.problems]
     lines += [f"  warning: {warning}" for warning in result.warnings]

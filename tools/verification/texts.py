@@ -1,6 +1,7 @@
 """Numbers as they are shown."""
 
 import math
+from collections.abc import Sequence
 
 ROUNDING = 1e-10  # smaller relative errors depend on the compiler
 
@@ -25,6 +26,16 @@ def error_text(error: float | None, is_relative: bool) -> str:
     if not is_relative or abs(error) < 1e-5:
         return f"{error:.2g}"
     return f"{100.0 * error:.3g} %"
+
+
+def balance_text(found: Sequence[float]) -> str:
+    """What the balances of forces of some decks say, if there are any."""
+    if not found:
+        return ""
+    many = "one deck" if len(found) == 1 else f"{len(found)} decks"
+    worst = max(found)
+    most = f"at most {worst:.2g}" if worst >= ROUNDING else f"less than {ROUNDING:g}"
+    return f"{many}: {most} of all forces is out of balance in any increment"
 
 
 def order_text(order: float) -> str:
