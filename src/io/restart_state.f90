@@ -90,6 +90,8 @@ contains
     call exchange_reals(record, "state_eigenvalue", [2], state%eigenvalue, error)
     call exchange_real(record, "state_ghost_share_now", state%ghost_share_now, error)
     call exchange_real(record, "state_ghost_share", state%ghost_share, error)
+    call exchange_real(record, "state_balance_now", state%balance_now, error)
+    call exchange_real(record, "state_balance", state%balance, error)
     call exchange_reals(record, "reaction", shape(state%reaction), state%reaction, error)
     call exchange_reals(record, "applied", shape(state%applied), state%applied, error)
     call exchange_reals(record, "delta_u", shape(state%delta_u), state%delta_u, error)
