@@ -355,4 +355,4 @@ def test_folder_in_the_place_of_a_file_is_a_file_error(run_tessera, tmp_path):
     (tmp_path / "job.vtkhdf").mkdir()
     run = run_tessera(bar(), "--force", "-q")
     assert run.code == 8
-    assert run.stderr == "error: cannot create 'job.vtkhdf': Is a directory\n"
+    assert run.stderr == "error: cannot write 'job.vtkhdf': Is a directory\n"

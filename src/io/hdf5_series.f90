@@ -1,24 +1,22 @@
 !> HDF5 datasets that grow by rows.
 !!
-!! Rows of a chunk that is written once are never touched again, and chunks without compression
-!! keep their place: a reader finds all rows of the last flush also after a kill of the program.
-!! Every procedure returns at once when `error` is set already.
+!! They are open as long as their file. Every procedure returns at once when `error` is set already.
 ! allow(assumed-size)
 module mpm_hdf5_series
   use, intrinsic :: iso_c_binding, only: c_loc
-  use hdf5, only: h5dclose_f, h5dcreate_f, h5dget_space_f, h5dset_extent_f, h5dwrite_f, &
+  use hdf5, only: h5dcreate_f, h5dget_space_f, h5dset_extent_f, h5dwrite_f, &
                   h5kind_to_type, h5p_dataset_create_f, h5pclose_f, h5pcreate_f, h5pset_chunk_f, &
                   h5pset_deflate_f, h5pset_shuffle_f, h5s_select_set_f, h5s_unlimited_f, &
                   h5sclose_f, h5screate_simple_f, h5sselect_hyperslab_f, h5t_ieee_f64le, &
                   h5t_std_i32le, h5t_std_i64le, h5t_std_u8le, h5_integer_kind, h5_real_kind, &
                   hid_t, hsize_t
   use mpm_error, only: error_t
-  use mpm_hdf5_failure, only: hdf5_failure
-  use mpm_hdf5_file, only: hdf5_file_t
+  use mpm_hdf5_file, only: add_dataset, check_writable, fail_hdf5_file, hdf5_file_t, &
+                           note_rows, open_dataset
   use mpm_kinds, only: dp, ip
   implicit none
   private
-  public :: series_layout_t, series_t, append_rows, close_series, create_series
+  public :: series_layout_t, series_t, append_rows, create_series
   public :: kind_float64, kind_int32, kind_int64, kind_uint8
 
   integer, parameter :: kind_float64 = 1
@@ -35,12 +33,11 @@ module mpm_hdf5_series
     logical :: compressed = .false.    !! shuffle and deflate
   end type series_layout_t
 
-  !> An open dataset.
+  !> A dataset.
   type :: series_t
     type(series_layout_t) :: layout
-    integer(hid_t) :: id = -1_hid_t
-    integer(ip)    :: n_rows = 0_ip !! written so far
-    logical        :: is_open = .false.
+    integer     :: number = 0    !! in the list of its file, 0 = not created
+    integer(ip) :: n_rows = 0_ip !! written so far
   end type series_t
 
   !> Appends rows of reals or of integers.
@@ -52,15 +49,16 @@ contains
 
   !> Creates a dataset without rows.
   subroutine create_series(series, file, name, layout, error)
-    type(series_t), intent(out) :: series              !! open
-    type(hdf5_file_t), intent(in) :: file              !! open
+    type(series_t), intent(out) :: series              !! ready for append_rows
+    type(hdf5_file_t), intent(inout) :: file           !! open
     character(*), intent(in) :: name                   !! absolute path of the dataset
     type(series_layout_t), intent(in) :: layout        !! of its rows
     type(error_t), allocatable, intent(inout) :: error !! exit_file
-    integer(hid_t)   :: properties, space
+    integer(hid_t)   :: id, properties, space
     integer(hsize_t) :: first(2), largest(2), chunk(2)
     integer :: rank, status
 
+    call check_writable(file, error)
     if (allocated(error)) return
     series%layout = layout
     rank = merge(1, 2, layout%n_columns == 0)
@@ -75,31 +73,22 @@ contains
       if (status >= 0) call h5pset_deflate_f(properties, deflate_level, status)
     end if
     if (status >= 0) then
-      call h5dcreate_f(file%id, name, stored_type(layout%kind), space, series%id, status, &
+      call h5dcreate_f(file%id, name, stored_type(layout%kind), space, id, status, &
                        properties)
     end if
-    series%is_open = status >= 0
     if (status < 0) then
-      call hdf5_failure(error, file%path, "write")
+      call fail_hdf5_file(file, "write", error)
       return
     end if
+    call add_dataset(file, name, id, series%number)
     call h5pclose_f(properties, status)
     call h5sclose_f(space, status)
   end subroutine create_series
 
-  !> Closes a dataset; no effect on a closed one.
-  subroutine close_series(series)
-    type(series_t), intent(inout) :: series !! closed
-    integer :: status
-
-    if (series%is_open) call h5dclose_f(series%id, status)
-    series%is_open = .false.
-  end subroutine close_series
-
   !> Appends scalar rows of reals.
   subroutine append_reals(series, file, values, error)
     type(series_t), intent(inout) :: series            !! grows
-    type(hdf5_file_t), intent(in) :: file              !! that holds it
+    type(hdf5_file_t), intent(inout) :: file           !! that holds it
     real(dp), intent(in) :: values(:)                  !! (n_rows)
     type(error_t), allocatable, intent(inout) :: error !! exit_file
 
@@ -110,7 +99,7 @@ contains
   !> Appends rows of several reals.
   subroutine append_real_rows(series, file, values, error)
     type(series_t), intent(inout) :: series            !! grows
-    type(hdf5_file_t), intent(in) :: file              !! that holds it
+    type(hdf5_file_t), intent(inout) :: file           !! that holds it
     real(dp), intent(in) :: values(:, :)               !! (n_columns, n_rows)
     type(error_t), allocatable, intent(inout) :: error !! exit_file
 
@@ -121,23 +110,24 @@ contains
   !> Appends scalar rows of integers.
   subroutine append_integers(series, file, values, error)
     type(series_t), intent(inout) :: series            !! grows
-    type(hdf5_file_t), intent(in) :: file              !! that holds it
+    type(hdf5_file_t), intent(inout) :: file           !! that holds it
     integer(ip), intent(in) :: values(:)               !! (n_rows)
     type(error_t), allocatable, intent(inout) :: error !! exit_file
     integer(ip), allocatable, target :: buffer(:)
-    integer(hid_t) :: memory, space
+    integer(hid_t) :: id, memory, space
     integer :: status
 
+    call check_writable(file, error)
     if (allocated(error)) return
     allocate (buffer(size(values)))
     buffer(:) = values
-    call grow(series, size(values), memory, space, status)
+    call grow(series, file, size(values), id, memory, space, status)
     if (status >= 0) then
-      call h5dwrite_f(series%id, h5kind_to_type(ip, h5_integer_kind), c_loc(buffer), status, &
+      call h5dwrite_f(id, h5kind_to_type(ip, h5_integer_kind), c_loc(buffer), status, &
                       memory, space)
     end if
     if (status < 0) then
-      call hdf5_failure(error, file%path, "write")
+      call fail_hdf5_file(file, "write", error)
       return
     end if
     call h5sclose_f(memory, status)
@@ -146,21 +136,23 @@ contains
 
   !> Writes reals behind the last row.
   subroutine write_reals(series, file, n_rows, values, error)
-    type(series_t), intent(inout) :: series          !! grows
-    type(hdf5_file_t), intent(in) :: file            !! that holds it
-    integer, intent(in) :: n_rows                    !! rows in values
-    real(dp), intent(in), target :: values(*)        !! row by row
-    type(error_t), allocatable, intent(out) :: error !! exit_file
-    integer(hid_t) :: memory, space
+    type(series_t), intent(inout) :: series            !! grows
+    type(hdf5_file_t), intent(inout) :: file           !! that holds it
+    integer, intent(in) :: n_rows                      !! rows in values
+    real(dp), intent(in), target :: values(*)          !! row by row
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+    integer(hid_t) :: id, memory, space
     integer :: status
 
-    call grow(series, n_rows, memory, space, status)
+    call check_writable(file, error)
+    if (allocated(error)) return
+    call grow(series, file, n_rows, id, memory, space, status)
     if (status >= 0) then
-      call h5dwrite_f(series%id, h5kind_to_type(dp, h5_real_kind), c_loc(values), status, &
+      call h5dwrite_f(id, h5kind_to_type(dp, h5_real_kind), c_loc(values), status, &
                       memory, space)
     end if
     if (status < 0) then
-      call hdf5_failure(error, file%path, "write")
+      call fail_hdf5_file(file, "write", error)
       return
     end if
     call h5sclose_f(memory, status)
@@ -168,12 +160,14 @@ contains
   end subroutine write_reals
 
   !> Makes room for rows and selects them.
-  subroutine grow(series, n_rows, memory, space, status)
-    type(series_t), intent(inout) :: series !! has n_rows rows more
-    integer, intent(in) :: n_rows           !! new rows
-    integer(hid_t), intent(out) :: memory   !! dataspace of the new rows
-    integer(hid_t), intent(out) :: space    !! dataspace of the file, the new rows selected
-    integer, intent(out) :: status          !! < 0: failed
+  subroutine grow(series, file, n_rows, id, memory, space, status)
+    type(series_t), intent(inout) :: series  !! has n_rows rows more
+    type(hdf5_file_t), intent(inout) :: file !! that holds it
+    integer, intent(in) :: n_rows            !! new rows
+    integer(hid_t), intent(out) :: id        !! dataset
+    integer(hid_t), intent(out) :: memory    !! dataspace of the new rows
+    integer(hid_t), intent(out) :: space     !! dataspace of the file, the new rows selected
+    integer, intent(out) :: status           !! < 0: failed
     integer(hsize_t) :: first(2), new(2), total(2)
     integer :: rank
 
@@ -182,13 +176,16 @@ contains
     first(rank) = series%n_rows
     new = row_shape(series%layout, int(n_rows, hsize_t))
     total = row_shape(series%layout, int(series%n_rows + n_rows, hsize_t))
-    call h5dset_extent_f(series%id, total(:rank), status)
+    call open_dataset(file, series%number, id, status)
+    if (status >= 0) call h5dset_extent_f(id, total(:rank), status)
     if (status >= 0) call h5screate_simple_f(rank, new(:rank), memory, status)
-    if (status >= 0) call h5dget_space_f(series%id, space, status)
+    if (status >= 0) call h5dget_space_f(id, space, status)
     if (status >= 0) then
       call h5sselect_hyperslab_f(space, h5s_select_set_f, first(:rank), new(:rank), status)
     end if
-    if (status >= 0) series%n_rows = series%n_rows + n_rows
+    if (status < 0) return
+    series%n_rows = series%n_rows + n_rows
+    call note_rows(file, series%number, series%n_rows)
   end subroutine grow
 
   !> Extents of a number of rows, in the order of Fortran.

@@ -149,10 +149,10 @@ contains
     call flush_vtkhdf(vtk, error)
   end subroutine write_mesh
 
-  !> Closes both files; no effect on closed ones.
+  !> Closes both files; no effect on closed ones. After an error nothing new gets into them.
   subroutine close_results(results, error)
-    type(results_file_t), intent(inout) :: results   !! closed
-    type(error_t), allocatable, intent(out) :: error !! exit_file
+    type(results_file_t), intent(inout) :: results     !! closed
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
 
     call close_vtkhdf(results%points, error)
     call close_vtkhdf(results%mesh, error)

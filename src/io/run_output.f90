@@ -4,7 +4,7 @@ module mpm_run_output
   use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_text
   use mpm_error, only: error_t
   use mpm_expectations, only: collect_expectations, evaluate_expectations, is_expected, verdict_t
-  use mpm_hdf5_file, only: flush_hdf5_file
+  use mpm_hdf5_file, only: publish_hdf5_file
   use mpm_history, only: open_history, units_of, write_history_row
   use mpm_history_columns, only: history_column_t, history_columns, history_values
   use mpm_kinds, only: dp
@@ -19,8 +19,8 @@ module mpm_run_output
   use mpm_run_log, only: attempt_text, close_log, locking_text, log_attempt, log_message, &
                          log_summary, open_log, run_log_t
   use mpm_run_state, only: estimated_time_left, run_info_t, run_state_t
-  use mpm_run_tables, only: append_history, append_iterations, append_ledger, close_tables, &
-                            open_tables, run_tables_t
+  use mpm_run_tables, only: append_history, append_iterations, append_ledger, open_tables, &
+                            run_tables_t
   use mpm_status_file, only: open_status, status_file_t, write_status
   use mpm_text_file, only: close_text_file, ignore_size_signal, text_file_t
   implicit none
@@ -69,9 +69,11 @@ contains
     call open_history(output%history, paths%history, output%column, model, info, error)
     if (allocated(error)) return
     call open_results(output%results, paths%points, paths%mesh, model, error)
-    if (allocated(error)) return
-    call open_tables(output%tables, output%results%points%file, output%column, info, &
-                     units_of(model), error)
+    if (.not. allocated(error)) then
+      call open_tables(output%tables, output%results%points%file, output%column, info, &
+                       units_of(model), error)
+    end if
+    if (allocated(error)) call close_results(output%results, error)
   end subroutine open_output
 
   !> Writes what Newton's method did in an attempt, converged or not.
@@ -88,7 +90,7 @@ contains
     call append_iterations(output%tables, output%results%points%file, state, report, error)
     if (allocated(error)) return
     if (report%outcome /= outcome_converged) then
-      call flush_hdf5_file(output%results%points%file, error)
+      call publish_hdf5_file(output%results%points%file, error)
     end if
     if (output%quiet) return
     if (output%verbose) then
@@ -129,7 +131,7 @@ contains
       output%n_shown = state%increment_total
       call write_increment_fields(output%results, model, mesh, points, state, error)
     else
-      call flush_hdf5_file(output%results%points%file, error)
+      call publish_hdf5_file(output%results%points%file, error)
     end if
   end subroutine write_increment
 
@@ -155,7 +157,7 @@ contains
     type(run_state_t), intent(in) :: state           !! at the end of the run
     integer, intent(in) :: exit_code                 !! of the program
     type(error_t), allocatable, intent(out) :: error !! exit_file: the first one that occurs
-    type(error_t), allocatable :: failure
+    type(error_t), allocatable :: failure, results_failure
 
     if (.not. output%quiet) call end_progress()
     call log_summary(output%log, model, state, output%verdict, exit_code, error)
@@ -165,9 +167,8 @@ contains
     call keep_first(error, failure)
     call close_text_file(output%history, failure)
     call keep_first(error, failure)
-    call close_tables(output%tables)
-    call close_results(output%results, failure)
-    call keep_first(error, failure)
+    call close_results(output%results, results_failure)
+    call keep_first(error, results_failure)
   end subroutine close_output
 
   !> Keeps an error unless there is one already.

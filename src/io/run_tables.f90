@@ -5,7 +5,7 @@ module mpm_run_tables
   use mpm_error, only: error_t
   use mpm_hdf5_file, only: hdf5_file_t, make_group, write_integers_attribute, write_text, &
                            write_text_attribute
-  use mpm_hdf5_series, only: append_rows, close_series, create_series, kind_float64, kind_int32, &
+  use mpm_hdf5_series, only: append_rows, create_series, kind_float64, kind_int32, &
                              kind_int64, series_layout_t, series_t
   use mpm_history_columns, only: history_column_t
   use mpm_kinds, only: dp, ip
@@ -13,7 +13,7 @@ module mpm_run_tables
   use mpm_run_state, only: run_info_t, run_state_t
   implicit none
   private
-  public :: run_tables_t, close_tables, open_tables
+  public :: run_tables_t, open_tables
   public :: append_history, append_iterations, append_ledger
 
   character(13), parameter :: iteration_columns(10) = [character(13) :: "step", "increment", &
@@ -28,7 +28,7 @@ module mpm_run_tables
   integer, parameter :: column_of_share = 11
   integer, parameter :: column_of_balance = 14
 
-  !> The open tables; each column is a dataset.
+  !> The tables; each column is a dataset.
   type :: run_tables_t
     type(series_t), allocatable :: history(:)    !! step, increment, time, then the *HISTORY ones
     type(series_t), allocatable :: iterations(:) !! (10)
@@ -39,8 +39,8 @@ contains
 
   !> Creates the group with the deck and the attributes, and the tables without rows.
   subroutine open_tables(tables, file, columns, info, units, error)
-    type(run_tables_t), intent(out) :: tables          !! open
-    type(hdf5_file_t), intent(in) :: file              !! JOB.vtkhdf
+    type(run_tables_t), intent(out) :: tables          !! without rows
+    type(hdf5_file_t), intent(inout) :: file           !! JOB.vtkhdf
     type(history_column_t), intent(in) :: columns(:)   !! of *HISTORY
     type(run_info_t), intent(in) :: info               !! deck and program
     character(*), intent(in) :: units                  !! labels of *UNITS
@@ -64,8 +64,8 @@ contains
 
   !> Creates the columns of the history.
   subroutine create_history(series, file, columns, error)
-    type(series_t), allocatable, intent(out) :: series(:) !! open
-    type(hdf5_file_t), intent(in) :: file                 !! JOB.vtkhdf
+    type(series_t), allocatable, intent(out) :: series(:) !! without rows
+    type(hdf5_file_t), intent(inout) :: file              !! JOB.vtkhdf
     type(history_column_t), intent(in) :: columns(:)      !! of *HISTORY
     type(error_t), allocatable, intent(inout) :: error    !! exit_file
     integer :: i
@@ -84,8 +84,8 @@ contains
 
   !> Creates the columns of the iterations.
   subroutine create_iterations(series, file, error)
-    type(series_t), allocatable, intent(out) :: series(:) !! open
-    type(hdf5_file_t), intent(in) :: file                 !! JOB.vtkhdf
+    type(series_t), allocatable, intent(out) :: series(:) !! without rows
+    type(hdf5_file_t), intent(inout) :: file              !! JOB.vtkhdf
     type(error_t), allocatable, intent(inout) :: error    !! exit_file
     integer :: i
 
@@ -100,8 +100,8 @@ contains
 
   !> Creates the columns of the ledger.
   subroutine create_ledger(series, file, error)
-    type(series_t), allocatable, intent(out) :: series(:) !! open
-    type(hdf5_file_t), intent(in) :: file                 !! JOB.vtkhdf
+    type(series_t), allocatable, intent(out) :: series(:) !! without rows
+    type(hdf5_file_t), intent(inout) :: file              !! JOB.vtkhdf
     type(error_t), allocatable, intent(inout) :: error    !! exit_file
     type(series_layout_t) :: layout
     integer :: i
@@ -126,7 +126,7 @@ contains
   !> Appends the values of *HISTORY.
   subroutine append_history(tables, file, state, values, error)
     type(run_tables_t), intent(inout) :: tables      !! longer
-    type(hdf5_file_t), intent(in) :: file            !! JOB.vtkhdf
+    type(hdf5_file_t), intent(inout) :: file         !! JOB.vtkhdf
     type(run_state_t), intent(in) :: state           !! step, increment, time
     real(dp), intent(in) :: values(:)                !! of the columns
     type(error_t), allocatable, intent(out) :: error !! exit_file
@@ -143,7 +143,7 @@ contains
   !> Appends the iterations of an attempt, from the residual before the first correction on.
   subroutine append_iterations(tables, file, state, report, error)
     type(run_tables_t), intent(inout) :: tables      !! longer
-    type(hdf5_file_t), intent(in) :: file            !! JOB.vtkhdf
+    type(hdf5_file_t), intent(inout) :: file         !! JOB.vtkhdf
     type(run_state_t), intent(in) :: state           !! step, increment, attempt
     type(newton_report_t), intent(in) :: report      !! of the attempt
     type(error_t), allocatable, intent(out) :: error !! exit_file
@@ -170,7 +170,7 @@ contains
   !> Appends the ledger of an increment.
   subroutine append_ledger(tables, file, state, ledger, error)
     type(run_tables_t), intent(inout) :: tables      !! longer
-    type(hdf5_file_t), intent(in) :: file            !! JOB.vtkhdf
+    type(hdf5_file_t), intent(inout) :: file         !! JOB.vtkhdf
     type(run_state_t), intent(in) :: state           !! step, increment, time, checkerboard
     type(ledger_t), intent(in) :: ledger             !! after the increment
     type(error_t), allocatable, intent(out) :: error !! exit_file
@@ -193,26 +193,6 @@ contains
     call append_rows(tables%ledger(column_of_share + 2), file, state%eigenvalue(2:2), error)
     call append_rows(tables%ledger(column_of_balance), file, [state%balance_now], error)
   end subroutine append_ledger
-
-  !> Closes all tables.
-  subroutine close_tables(tables)
-    type(run_tables_t), intent(inout) :: tables !! closed
-
-    call close_all(tables%history)
-    call close_all(tables%iterations)
-    call close_all(tables%ledger)
-  end subroutine close_tables
-
-  !> Closes columns.
-  subroutine close_all(series)
-    type(series_t), allocatable, intent(inout) :: series(:) !! closed
-    integer :: i
-
-    if (.not. allocated(series)) return
-    do i = 1, size(series)
-      call close_series(series(i))
-    end do
-  end subroutine close_all
 
   !> A name without the separator of HDF5 paths.
   pure function link_name(name) result(link)

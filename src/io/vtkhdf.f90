@@ -5,9 +5,9 @@
 !! at once when `error` is set already.
 module mpm_vtkhdf
   use mpm_error, only: error_t
-  use mpm_hdf5_file, only: close_hdf5_file, create_hdf5_file, flush_hdf5_file, hdf5_file_t, &
-                           make_group, write_integers_attribute, write_text_attribute
-  use mpm_hdf5_series, only: append_rows, close_series, create_series, kind_float64, kind_int32, &
+  use mpm_hdf5_file, only: close_hdf5_file, create_hdf5_file, hdf5_file_t, make_group, &
+                           publish_hdf5_file, write_integers_attribute, write_text_attribute
+  use mpm_hdf5_series, only: append_rows, create_series, kind_float64, kind_int32, &
                              kind_int64, kind_uint8, series_layout_t, series_t
   use mpm_kinds, only: dp, ip
   implicit none
@@ -81,7 +81,7 @@ contains
   !> Creates the datasets of the grid.
   subroutine create_cells(cells, file, n_cells, error)
     type(cells_t), intent(out) :: cells                !! open
-    type(hdf5_file_t), intent(in) :: file              !! open
+    type(hdf5_file_t), intent(inout) :: file           !! open
     integer, intent(in) :: n_cells                     !! expected cells
     type(error_t), allocatable, intent(inout) :: error !! exit_file
     type(series_layout_t) :: index_layout
@@ -99,7 +99,7 @@ contains
   !> Creates the datasets of the steps.
   subroutine create_steps(steps, file, error)
     type(steps_t), intent(out) :: steps                !! open
-    type(hdf5_file_t), intent(in) :: file              !! open
+    type(hdf5_file_t), intent(inout) :: file           !! open
     type(error_t), allocatable, intent(inout) :: error !! exit_file
 
     call make_group(file, "/VTKHDF/Steps", error)
@@ -119,7 +119,7 @@ contains
   !> Creates a dataset of counts or offsets.
   subroutine create_counter(series, file, name, error)
     type(series_t), intent(out) :: series              !! open
-    type(hdf5_file_t), intent(in) :: file              !! open
+    type(hdf5_file_t), intent(inout) :: file           !! open
     character(*), intent(in) :: name                   !! absolute path
     type(error_t), allocatable, intent(inout) :: error !! exit_file
 
@@ -224,41 +224,22 @@ contains
     call append_rows(vtk%field(i)%offsets, vtk%file, [vtk%field(i)%last_offset], error)
   end subroutine repeat_field
 
-  !> Makes the steps written so far visible to a reader: first the data, then their number.
+  !> Makes the steps written so far visible to a reader.
   subroutine flush_vtkhdf(vtk, error)
-    type(vtkhdf_t), intent(in) :: vtk                  !! after the last field of a step
+    type(vtkhdf_t), intent(inout) :: vtk               !! after the last field of a step
     type(error_t), allocatable, intent(inout) :: error !! exit_file
 
-    call flush_hdf5_file(vtk%file, error)
     call write_integers_attribute(vtk%file, "/VTKHDF/Steps", "NSteps", [int(vtk%n_steps, ip)], &
                                   error)
-    call flush_hdf5_file(vtk%file, error)
+    call publish_hdf5_file(vtk%file, error)
   end subroutine flush_vtkhdf
 
-  !> Closes a file; no effect on a closed one.
+  !> Closes a file; no effect on a closed one. After an error the steps since the last flush are
+  !! lost, and a file that was never flushed is not there.
   subroutine close_vtkhdf(vtk, error)
     type(vtkhdf_t), intent(inout) :: vtk               !! closed
     type(error_t), allocatable, intent(inout) :: error !! exit_file
-    integer :: i
 
-    if (.not. vtk%file%is_open) return
-    do i = 1, size(vtk%field)
-      call close_series(vtk%field(i)%values)
-      call close_series(vtk%field(i)%offsets)
-    end do
-    call close_series(vtk%points)
-    call close_series(vtk%cells%n_points)
-    call close_series(vtk%cells%n_cells)
-    call close_series(vtk%cells%n_ids)
-    call close_series(vtk%cells%connectivity)
-    call close_series(vtk%cells%offsets)
-    call close_series(vtk%cells%types)
-    call close_series(vtk%steps%time)
-    call close_series(vtk%steps%part)
-    call close_series(vtk%steps%n_parts)
-    call close_series(vtk%steps%point)
-    call close_series(vtk%steps%cell)
-    call close_series(vtk%steps%id)
     call close_hdf5_file(vtk%file, error)
   end subroutine close_vtkhdf
 

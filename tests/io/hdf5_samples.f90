@@ -3,12 +3,12 @@ module hdf5_samples
   use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
   use hdf5, only: h5aclose_f, h5aopen_f, h5aread_f, h5dclose_f, h5dget_space_f, h5dget_type_f, &
                   h5dopen_f, h5dread_f, h5f_acc_rdonly_f, h5fclose_f, h5fopen_f, h5kind_to_type, &
-                  h5oclose_f, h5oopen_f, h5open_f, h5sclose_f, h5sget_simple_extent_npoints_f, &
+                  h5lexists_f, h5oclose_f, h5oopen_f, h5open_f, h5sclose_f, h5sget_simple_extent_npoints_f, &
                   h5tclose_f, h5tget_size_f, h5_integer_kind, h5_real_kind, hid_t, hsize_t, size_t
   use mpm_kinds, only: dp, ip
   implicit none
   private
-  public :: attribute_of, integers_of, reals_of, text_of
+  public :: attribute_of, has_object, integers_of, reals_of, text_of
 
 contains
 
@@ -89,6 +89,21 @@ contains
     call h5fclose_f(file, status)
     number = int(value)
   end function attribute_of
+
+  !> Whether a file has an object below its root group.
+  function has_object(path, name) result(yes)
+    character(*), intent(in) :: path, name
+    logical :: yes
+    integer(hid_t) :: file
+    integer :: status
+
+    call h5open_f(status)
+    call h5fopen_f(path, h5f_acc_rdonly_f, file, status)
+    yes = .false.
+    if (status < 0) return
+    call h5lexists_f(file, name, yes, status)
+    call h5fclose_f(file, status)
+  end function has_object
 
   !> Opens a dataset and counts its numbers.
   subroutine open_dataset(path, name, file, id, n)
