@@ -1,16 +1,18 @@
 !> Texts and attributes of HDF5 files, by the identifiers of HDF5.
 module mpm_hdf5_attribute
-  use, intrinsic :: iso_c_binding, only: c_char, c_loc
-  use hdf5, only: h5aclose_f, h5acreate_f, h5aexists_f, h5aopen_f, h5awrite_f, h5dclose_f, &
-                  h5dcreate_f, h5dwrite_f, h5kind_to_type, h5oclose_f, h5oopen_f, h5s_scalar_f, &
-                  h5sclose_f, h5screate_f, h5screate_simple_f, h5t_c_s1, h5t_cset_ascii_f, &
-                  h5t_cset_utf8_f, h5t_std_i64le, h5t_str_nullpad_f, h5tclose_f, h5tcopy_f, &
-                  h5tset_cset_f, h5tset_size_f, h5tset_strpad_f, h5_integer_kind, hid_t, hsize_t, &
-                  size_t
+  use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
+  use hdf5, only: h5aclose_f, h5acreate_f, h5aexists_f, h5aget_type_f, h5aopen_f, h5aread_f, &
+                  h5awrite_f, h5dclose_f, h5dcreate_f, h5dwrite_f, h5kind_to_type, h5oclose_f, &
+                  h5oopen_f, h5s_scalar_f, h5sclose_f, h5screate_f, h5screate_simple_f, h5t_c_s1, &
+                  h5t_cset_ascii_f, h5t_cset_utf8_f, h5t_std_i64le, h5t_str_nullpad_f, &
+                  h5tclose_f, h5tcopy_f, h5tget_size_f, h5tis_variable_str_f, h5tset_cset_f, &
+                  h5tset_size_f, h5tset_strpad_f, h5_integer_kind, hid_t, hsize_t, size_t
   use mpm_kinds, only: ip
   implicit none
   private
-  public :: put_integers_attribute, put_text, put_text_attribute
+  public :: get_text_attribute, put_integers_attribute, put_text, put_text_attribute
+
+  integer, parameter :: longest_text = 1000 !! of an attribute that is read [bytes]
 
 contains
 
@@ -56,6 +58,59 @@ contains
     if (status >= 0) call h5oclose_f(id, status)
     if (status >= 0) call h5tclose_f(type_id, status)
   end subroutine put_text_attribute
+
+  !> Reads a text of fixed length from an attribute.
+  subroutine get_text_attribute(file, object, name, text, status)
+    integer(hid_t), intent(in) :: file !! open
+    character(*), intent(in) :: object !! absolute path of a group
+    character(*), intent(in) :: name   !! of the attribute
+    character(:), allocatable, intent(out) :: text !! empty after a failure
+    integer, intent(out) :: status     !! < 0: not there, or no such text
+    integer(hid_t)  :: attribute, id
+    integer :: ignored
+
+    text = ""
+    call h5oopen_f(file, object, id, status)
+    if (status < 0) return
+    call h5aopen_f(id, name, attribute, status)
+    if (status >= 0) then
+      call read_letters(attribute, text, status)
+      call h5aclose_f(attribute, ignored)
+    end if
+    call h5oclose_f(id, ignored)
+  end subroutine get_text_attribute
+
+  !> Reads the text of an attribute.
+  subroutine read_letters(attribute, text, status)
+    integer(hid_t), intent(in) :: attribute          !! open
+    character(:), allocatable, intent(inout) :: text !! what it holds
+    integer, intent(out) :: status                   !! < 0: no text of fixed length
+    character(kind=c_char), allocatable, target :: letters(:)
+    type(c_ptr) :: address
+    integer(hid_t)  :: text_type, type_id
+    integer(size_t) :: length
+    integer :: i, ignored
+    logical :: is_variable
+
+    call h5aget_type_f(attribute, type_id, status)
+    if (status < 0) return
+    call h5tis_variable_str_f(type_id, is_variable, status)
+    if (status >= 0) call h5tget_size_f(type_id, length, status)
+    if (status >= 0 .and. (is_variable .or. length > longest_text)) status = -1
+    call h5tclose_f(type_id, ignored)
+    if (status < 0) return
+    allocate (letters(length))
+    letters = achar(0)
+    call make_text_type(text_type, size(letters), h5t_cset_ascii_f, status)
+    if (status < 0) return
+    address = c_loc(letters)
+    call h5aread_f(attribute, text_type, address, status)
+    call h5tclose_f(text_type, ignored)
+    if (status < 0) return
+    do i = 1, size(letters)
+      if (letters(i) /= achar(0)) text = text//letters(i)
+    end do
+  end subroutine read_letters
 
   !> Writes integers as an attribute: a scalar if there is one. An attribute of that name and
   !! shape is overwritten.

@@ -10,7 +10,7 @@ module mpm_hdf5_copy
   use mpm_kinds, only: ip
   implicit none
   private
-  public :: copy_objects, copy_rows, dataset_rows
+  public :: copy_objects, copy_rows, dataset_rows, dataset_shape
 
   integer, parameter :: longest_name = 80 !! of an object in the root group
 
@@ -81,7 +81,7 @@ contains
     integer(hsize_t) :: extent(2)
     integer :: rank
 
-    call get_shape(dataset, rank, extent, status)
+    call dataset_shape(dataset, rank, extent, status)
     n_rows = 0_ip
     if (status >= 0) n_rows = int(extent(rank), ip)
   end subroutine dataset_rows
@@ -98,7 +98,7 @@ contains
     integer(ip) :: first
     integer :: rank
 
-    call get_shape(to, rank, extent, status)
+    call dataset_shape(to, rank, extent, status)
     if (status < 0) return
     call h5dget_create_plist_f(to, properties, status)
     if (status < 0) return
@@ -123,11 +123,16 @@ contains
     integer(c_int64_t), allocatable :: bytes(:)
     integer(c_int64_t) :: n_bytes, offset(2)
     integer(c_int32_t) :: filters
+    integer :: problem
 
     offset = [int(first, c_int64_t), 0_c_int64_t] ! in the order of C
     status = int(h5_chunk_size(from, offset, n_bytes))
     if (status < 0 .or. n_bytes == 0_c_int64_t) return
-    allocate (bytes((n_bytes + 7_c_int64_t)/8_c_int64_t))
+    allocate (bytes((n_bytes + 7_c_int64_t)/8_c_int64_t), stat=problem)
+    if (problem /= 0) then
+      status = -1
+      return
+    end if
     status = int(h5_read_chunk(from, default_transfer, offset, filters, bytes))
     if (status < 0) return
     status = int(h5_write_chunk(to, default_transfer, filters, offset, int(n_bytes, c_size_t), &
@@ -135,7 +140,7 @@ contains
   end subroutine copy_chunk
 
   !> Extents of a dataset, in the order of Fortran: rows are last.
-  subroutine get_shape(dataset, rank, extent, status)
+  subroutine dataset_shape(dataset, rank, extent, status)
     integer(hid_t), intent(in)    :: dataset   !! open
     integer, intent(out)          :: rank      !! 1 or 2
     integer(hsize_t), intent(out) :: extent(2) !! the first rank count
@@ -153,6 +158,6 @@ contains
     if (status >= 0) call h5sget_simple_extent_dims_f(space, extent(:rank), largest(:rank), status)
     call h5sclose_f(space, ignored)
     if (status < 0) rank = 1
-  end subroutine get_shape
+  end subroutine dataset_shape
 
 end module mpm_hdf5_copy

@@ -16,7 +16,7 @@ module mpm_hdf5_series
   use mpm_kinds, only: dp, ip
   implicit none
   private
-  public :: series_layout_t, series_t, append_rows, create_series
+  public :: series_layout_t, series_t, append_rows, create_series, row_count
   public :: kind_float64, kind_int32, kind_int64, kind_uint8
 
   integer, parameter :: kind_float64 = 1
@@ -36,8 +36,7 @@ module mpm_hdf5_series
   !> A dataset.
   type :: series_t
     type(series_layout_t) :: layout
-    integer     :: number = 0    !! in the list of its file, 0 = not created
-    integer(ip) :: n_rows = 0_ip !! written so far
+    integer :: number = 0 !! in the list of its file, 0 = not created
   end type series_t
 
   !> Appends rows of reals or of integers.
@@ -87,7 +86,7 @@ contains
 
   !> Appends scalar rows of reals.
   subroutine append_reals(series, file, values, error)
-    type(series_t), intent(inout) :: series            !! grows
+    type(series_t), intent(in) :: series               !! grows
     type(hdf5_file_t), intent(inout) :: file           !! that holds it
     real(dp), intent(in) :: values(:)                  !! (n_rows)
     type(error_t), allocatable, intent(inout) :: error !! exit_file
@@ -98,7 +97,7 @@ contains
 
   !> Appends rows of several reals.
   subroutine append_real_rows(series, file, values, error)
-    type(series_t), intent(inout) :: series            !! grows
+    type(series_t), intent(in) :: series               !! grows
     type(hdf5_file_t), intent(inout) :: file           !! that holds it
     real(dp), intent(in) :: values(:, :)               !! (n_columns, n_rows)
     type(error_t), allocatable, intent(inout) :: error !! exit_file
@@ -109,7 +108,7 @@ contains
 
   !> Appends scalar rows of integers.
   subroutine append_integers(series, file, values, error)
-    type(series_t), intent(inout) :: series            !! grows
+    type(series_t), intent(in) :: series               !! grows
     type(hdf5_file_t), intent(inout) :: file           !! that holds it
     integer(ip), intent(in) :: values(:)               !! (n_rows)
     type(error_t), allocatable, intent(inout) :: error !! exit_file
@@ -136,7 +135,7 @@ contains
 
   !> Writes reals behind the last row.
   subroutine write_reals(series, file, n_rows, values, error)
-    type(series_t), intent(inout) :: series            !! grows
+    type(series_t), intent(in) :: series               !! grows
     type(hdf5_file_t), intent(inout) :: file           !! that holds it
     integer, intent(in) :: n_rows                      !! rows in values
     real(dp), intent(in), target :: values(*)          !! row by row
@@ -161,7 +160,7 @@ contains
 
   !> Makes room for rows and selects them.
   subroutine grow(series, file, n_rows, id, memory, space, status)
-    type(series_t), intent(inout) :: series  !! has n_rows rows more
+    type(series_t), intent(in) :: series     !! has n_rows rows more
     type(hdf5_file_t), intent(inout) :: file !! that holds it
     integer, intent(in) :: n_rows            !! new rows
     integer(hid_t), intent(out) :: id        !! dataset
@@ -169,13 +168,15 @@ contains
     integer(hid_t), intent(out) :: space     !! dataspace of the file, the new rows selected
     integer, intent(out) :: status           !! < 0: failed
     integer(hsize_t) :: first(2), new(2), total(2)
+    integer(ip) :: n_before
     integer :: rank
 
     rank = merge(1, 2, series%layout%n_columns == 0)
     first = 0_hsize_t
-    first(rank) = series%n_rows
+    n_before = row_count(series, file)
+    first(rank) = n_before
     new = row_shape(series%layout, int(n_rows, hsize_t))
-    total = row_shape(series%layout, int(series%n_rows + n_rows, hsize_t))
+    total = row_shape(series%layout, int(n_before + n_rows, hsize_t))
     call open_dataset(file, series%number, id, status)
     if (status >= 0) call h5dset_extent_f(id, total(:rank), status)
     if (status >= 0) call h5screate_simple_f(rank, new(:rank), memory, status)
@@ -183,10 +184,18 @@ contains
     if (status >= 0) then
       call h5sselect_hyperslab_f(space, h5s_select_set_f, first(:rank), new(:rank), status)
     end if
-    if (status < 0) return
-    series%n_rows = series%n_rows + n_rows
-    call note_rows(file, series%number, series%n_rows)
+    if (status >= 0) call note_rows(file, series%number, n_before + n_rows)
   end subroutine grow
+
+  !> Rows of a dataset.
+  pure function row_count(series, file) result(n_rows)
+    type(series_t), intent(in) :: series  !! dataset
+    type(hdf5_file_t), intent(in) :: file !! that holds it
+    integer(ip) :: n_rows                 !! written so far, 0 if it was not created
+
+    n_rows = 0_ip
+    if (series%number > 0) n_rows = file%dataset(series%number)%n_rows
+  end function row_count
 
   !> Extents of a number of rows, in the order of Fortran.
   pure function row_shape(layout, n_rows) result(extents)

@@ -6,7 +6,7 @@ module mpm_history
   use mpm_model, only: model_t
   use mpm_run_state, only: run_info_t, run_state_t
   use mpm_text, only: integer_text
-  use mpm_text_file, only: open_text_file, text_file_t, write_line
+  use mpm_text_file, only: open_text_file, text_file_t, write_counted_line
   implicit none
   private
   public :: exact_text, open_history, units_of, write_history_row
@@ -38,12 +38,12 @@ contains
     do i = 1, size(columns)
       head = head//","//columns(i)%name
     end do
-    call write_line(file, head, error)
+    call write_counted_line(file, head, error)
   end subroutine open_history
 
   !> Writes a row.
   subroutine write_history_row(file, state, values, error)
-    type(text_file_t), intent(in) :: file              !! open
+    type(text_file_t), intent(inout) :: file           !! open
     type(run_state_t), intent(in) :: state             !! step, increment, time
     real(dp), intent(in) :: values(:)                  !! of the columns
     type(error_t), allocatable, intent(out) :: error   !! exit_file
@@ -54,7 +54,7 @@ contains
     do i = 1, size(values)
       row = row//","//exact_text(values(i))
     end do
-    call write_line(file, row, error)
+    call write_counted_line(file, row, error)
   end subroutine write_history_row
 
   !> The labels of *UNITS.

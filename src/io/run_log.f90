@@ -8,11 +8,12 @@ module mpm_run_log
   use mpm_model, only: model_t
   use mpm_run_state, only: run_info_t, run_state_t
   use mpm_text, only: integer_text, real_text
-  use mpm_text_file, only: close_text_file, open_text_file, text_file_t, write_line
+  use mpm_text_file, only: append_to_text_file, close_text_file, open_text_file, text_file_t, &
+                           write_line
   implicit none
   private
   public :: run_log_t, attempt_text, close_log, locking_text, log_attempt, log_message
-  public :: log_summary, open_log
+  public :: log_summary, open_log, resume_log
 
   character(*), parameter :: line_end = new_line("a")
 
@@ -48,6 +49,18 @@ contains
     call write_line(log%file, model_text(model)//freedom_ratio_text(model)//set_text(model%mesh), &
                     error)
   end subroutine open_log
+
+  !> Opens the log of an interrupted run and writes behind it what goes on.
+  subroutine resume_log(log, path, message, error)
+    type(run_log_t), intent(out) :: log              !! open
+    character(*), intent(in) :: path                 !! file
+    character(*), intent(in) :: message              !! without line end
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+
+    call append_to_text_file(log%file, path, error)
+    ! The last line may have been cut.
+    if (.not. allocated(error)) call write_line(log%file, line_end//message, error)
+  end subroutine resume_log
 
   !> Writes a text as it is.
   subroutine log_message(log, message, error)

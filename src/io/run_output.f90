@@ -4,7 +4,7 @@ module mpm_run_output
   use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_text
   use mpm_error, only: error_t
   use mpm_expectations, only: collect_expectations, evaluate_expectations, is_expected, verdict_t
-  use mpm_hdf5_file, only: publish_hdf5_file
+  use mpm_hdf5_file, only: publish_hdf5_file, write_text_attribute
   use mpm_history, only: open_history, units_of, write_history_row
   use mpm_history_columns, only: history_column_t, history_columns, history_values
   use mpm_kinds, only: dp
@@ -26,7 +26,7 @@ module mpm_run_output
   implicit none
   private
   public :: run_output_t, close_output, open_output, write_attempt, write_increment
-  public :: write_last_state
+  public :: open_fields, prepare_output, write_last_state
 
   !> Everything that is open during a run.
   type :: run_output_t
@@ -43,6 +43,7 @@ module mpm_run_output
     logical :: metered = .false.                     !! log or deck ask for the locking meter
     type(result_paths_t) :: paths                    !! of all files
     integer :: n_shown = -1                          !! accepted increments at the last field output
+    character(:), allocatable :: run_id              !! no other run has it
   end type run_output_t
 
 contains
@@ -55,26 +56,47 @@ contains
     type(run_info_t), intent(in) :: info             !! deck and program
     type(error_t), allocatable, intent(out) :: error !! exit_file
 
-    call ignore_size_signal()
-    output%paths = paths
-    output%quiet = info%quiet
-    output%verbose = info%verbose
-    output%column = history_columns(model)
-    call collect_expectations(output%verdict, model)
-    output%metered = model%locking_meter .or. is_expected(output%verdict, "CHECKERBOARD")
+    call prepare_output(output, model, info)
     call open_log(output%log, paths%log, model, info, error)
     if (allocated(error)) return
     call open_status(output%status, paths%status, model, error)
     if (allocated(error)) return
     call open_history(output%history, paths%history, output%column, model, info, error)
     if (allocated(error)) return
+    call open_fields(output, paths, model, info, error)
+  end subroutine open_output
+
+  !> What a run writes, before any file is open.
+  subroutine prepare_output(output, model, info)
+    type(run_output_t), intent(inout) :: output      !! ready to open its files
+    type(model_t), intent(in) :: model               !! at time zero
+    type(run_info_t), intent(in) :: info             !! how much to tell
+
+    call ignore_size_signal()
+    output%quiet = info%quiet
+    output%verbose = info%verbose
+    output%run_id = info%run_id
+    output%column = history_columns(model)
+    call collect_expectations(output%verdict, model)
+    output%metered = model%locking_meter .or. is_expected(output%verdict, "CHECKERBOARD")
+  end subroutine prepare_output
+
+  !> Opens JOB.vtkhdf and JOB_mesh.vtkhdf without rows. Earlier ones stay until the first output.
+  subroutine open_fields(output, paths, model, info, error)
+    type(run_output_t), intent(inout) :: output      !! both are open, or none after an error
+    type(result_paths_t), intent(in) :: paths        !! files of the job
+    type(model_t), intent(in) :: model               !! at time zero
+    type(run_info_t), intent(in) :: info             !! deck and program
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+
     call open_results(output%results, paths%points, paths%mesh, model, error)
     if (.not. allocated(error)) then
       call open_tables(output%tables, output%results%points%file, output%column, info, &
                        units_of(model), error)
     end if
+    call write_text_attribute(output%results%mesh%file, "/VTKHDF", "run", info%run_id, error)
     if (allocated(error)) call close_results(output%results, error)
-  end subroutine open_output
+  end subroutine open_fields
 
   !> Writes what Newton's method did in an attempt, converged or not.
   subroutine write_attempt(output, state, report, error)

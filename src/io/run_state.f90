@@ -1,5 +1,6 @@
 !> What every writer is told: about the run as a whole, and after each increment.
 module mpm_run_state
+  use, intrinsic :: iso_c_binding, only: c_int
   use mpm_build_info, only: build_compiler => compiler, build_version => version, compiler_flags, &
                             git_revision, hdf5_version, metis_version, umfpack_version
   use mpm_force_balance, only: force_imbalance, smallest_force
@@ -8,6 +9,7 @@ module mpm_run_state
   use mpm_model, only: model_t
   use mpm_patches, only: patches_t
   use mpm_system, only: body_t, system_t
+  use mpm_text, only: integer_text
   implicit none
   private
   public :: run_info_t, run_state_t
@@ -25,6 +27,7 @@ module mpm_run_state
     character(:), allocatable :: compiler  !! name and version of the compiler
     character(:), allocatable :: libraries !! names and versions of the libraries
     character(:), allocatable :: started   !! date and time of the start, ISO 8601
+    character(:), allocatable :: run_id    !! no other run has it
     integer :: n_threads = 1               !! OpenMP threads
     logical :: quiet = .false.             !! .true.: no progress on the terminal
     logical :: verbose = .false.           !! .true.: every Newton iteration on the terminal
@@ -65,6 +68,15 @@ module mpm_run_state
     real(dp), allocatable :: delta_j(:)       !! (n_el)           det Delta F of the increment [-]
     real(dp), allocatable :: delta_j_patch(:) !! (n_patch)        patch mean of delta_j [-]
   end type run_state_t
+
+  interface
+    !> Number of this process.
+    function c_process() bind(c, name="getpid") result(number)
+      import :: c_int
+      implicit none
+      integer(c_int) :: number
+    end function c_process
+  end interface
 
 contains
 
@@ -161,6 +173,7 @@ contains
     call date_and_time(date, time, zone)
     info%started = date(1:4)//"-"//date(5:6)//"-"//date(7:8)//"T"//time(1:2)//":"//time(3:4) &
                    //":"//time(5:6)//zone(1:3)//":"//zone(4:5)
+    info%run_id = date//"T"//trim(time)//zone//"-"//integer_text(int(c_process()))
   end subroutine make_run_info
 
 end module mpm_run_state

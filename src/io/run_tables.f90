@@ -56,6 +56,7 @@ contains
     call write_text_attribute(file, "/tessera", "units", units, error)
     call write_text_attribute(file, "/tessera", "formulation", info%formulation, error)
     call write_text_attribute(file, "/tessera", "started", info%started, error)
+    call write_text_attribute(file, "/tessera", "run", info%run_id, error)
     call write_integers_attribute(file, "/tessera", "threads", [int(info%n_threads, ip)], error)
     call create_history(tables%history, file, columns, error)
     call create_iterations(tables%iterations, file, error)

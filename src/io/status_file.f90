@@ -5,11 +5,12 @@ module mpm_status_file
   use mpm_kinds, only: dp
   use mpm_model, only: model_t
   use mpm_nodal_frames, only: in_local_axes, nodal_frames_t
+  use mpm_output_mark, only: text_mark_t
   use mpm_run_state, only: end_of_run, estimated_time_left, run_state_t
-  use mpm_text_file, only: open_text_file, text_file_t, write_line
+  use mpm_text_file, only: open_text_file, resume_text_file, text_file_t, write_counted_line
   implicit none
   private
-  public :: status_file_t, driver_reaction, open_status, write_status
+  public :: status_file_t, driver_reaction, open_status, resume_status, write_status
 
   !> The open file, and the reaction that it follows.
   type :: status_file_t
@@ -34,8 +35,21 @@ contains
     status%end_time = end_of_run(model)
     call find_driver(status, model)
     call open_text_file(status%file, path, error)
-    if (.not. allocated(error)) call write_line(status%file, head, error)
+    if (.not. allocated(error)) call write_counted_line(status%file, head, error)
   end subroutine open_status
+
+  !> Opens the file of an interrupted run behind a mark.
+  subroutine resume_status(status, path, model, mark, error)
+    type(status_file_t), intent(out) :: status       !! open
+    character(*), intent(in) :: path                 !! file that was checked
+    type(model_t), intent(in) :: model               !! driver, periods
+    type(text_mark_t), intent(in) :: mark            !! where it stood
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+
+    status%end_time = end_of_run(model)
+    call find_driver(status, model)
+    call resume_text_file(status%file, path, mark, error)
+  end subroutine resume_status
 
   !> The driver is that of the moving mesh where a step prescribes it, else the set of the first
   !! displacement that is not 0: a plane that the mesh only follows has no reaction.
@@ -94,7 +108,7 @@ contains
 
   !> Writes the line of an attempt.
   subroutine write_status(status, state, outcome, error)
-    type(status_file_t), intent(in) :: status        !! open
+    type(status_file_t), intent(inout) :: status     !! open
     type(run_state_t), intent(in) :: state           !! after the attempt
     character(*), intent(in) :: outcome              !! in words
     type(error_t), allocatable, intent(out) :: error !! exit_file
@@ -104,7 +118,7 @@ contains
       state%attempt, state%n_iterations, state%time, state%size, driver_reaction(status, state), &
       state%residual, state%n_active_elements, state%n_lost, state%wall_seconds, &
       estimated_time_left(state, status%end_time)
-    call write_line(status%file, trim(line)//"  "//outcome, error)
+    call write_counted_line(status%file, trim(line)//"  "//outcome, error)
   end subroutine write_status
 
 end module mpm_status_file

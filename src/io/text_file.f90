@@ -5,22 +5,28 @@
 ! allow(assumed-size)
 module mpm_text_file
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_intptr_t, c_loc, &
-                                         c_null_char, c_null_ptr, c_ptr, c_size_t
-  use mpm_error, only: error_t
+                                         c_long, c_null_char, c_null_ptr, c_ptr, c_size_t
+  use mpm_checksum, only: checksum_of_text
+  use mpm_error, only: error_t, exit_file, make_error
+  use mpm_kinds, only: ip
+  use mpm_output_mark, only: text_mark_t
   use mpm_system_failure, only: error_number, system_failure
   implicit none
   private
   public :: text_file_t, close_text_file, ignore_size_signal, open_text_file, write_line
+  public :: append_to_text_file, check_text_file, resume_text_file, write_counted_line
 
   integer(c_int), parameter :: size_signal = 25_c_int      !! SIGXFSZ of Linux
   integer(c_intptr_t), parameter :: ignored = 1_c_intptr_t !! SIG_IGN
   integer(c_int), parameter :: interrupted = 4_c_int       !! EINTR of Linux
+  integer, parameter :: block_size = 65536                 !! bytes read at once
 
   !> An open text file.
   type :: text_file_t
     character(:), allocatable :: path
     type(c_ptr) :: stream = c_null_ptr !! FILE of C
     logical :: is_open = .false.
+    type(text_mark_t) :: mark          !! where it stands, if all its lines were counted
   end type text_file_t
 
   interface
@@ -49,6 +55,15 @@ module mpm_text_file
       integer(c_size_t), value :: n
       integer(c_size_t) :: n_written
     end function c_write
+
+    !> Cuts an open file to a length; not 0 if that fails.
+    function c_truncate(descriptor, length) bind(c, name="ftruncate") result(status)
+      import :: c_int, c_long
+      implicit none
+      integer(c_int), value :: descriptor
+      integer(c_long), value :: length
+      integer(c_int) :: status
+    end function c_truncate
 
     !> Closes a file; not 0 if that fails.
     function c_close(stream) bind(c, name="fclose") result(status)
@@ -116,6 +131,81 @@ contains
       end if
     end do
   end subroutine write_line
+
+  !> Writes a line and keeps count of length and checksum of the file.
+  subroutine write_counted_line(file, line, error)
+    type(text_file_t), intent(inout) :: file         !! open file; its mark moves on
+    character(*), intent(in) :: line                 !! without line end; may hold several lines
+    type(error_t), allocatable, intent(out) :: error !! exit_file, for example a full disk
+
+    call write_line(file, line, error)
+    if (allocated(error)) return
+    file%mark%n_bytes = file%mark%n_bytes + len(line, ip) + 1_ip
+    file%mark%checksum = checksum_of_text(file%mark%checksum, line//new_line("a"))
+  end subroutine write_counted_line
+
+  !> Whether a file begins with what was written into it up to a mark.
+  subroutine check_text_file(path, mark, error)
+    character(*), intent(in) :: path                 !! file
+    type(text_mark_t), intent(in) :: mark            !! where it stood
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+    character(block_size) :: block
+    character(200) :: reason
+    integer(ip) :: checksum, left, n_there
+    integer :: n, status, unit
+
+    open (newunit=unit, file=path, access="stream", form="unformatted", status="old", &
+          action="read", iostat=status, iomsg=reason)
+    if (status == 0) inquire (unit=unit, size=n_there, iostat=status, iomsg=reason)
+    checksum = 0_ip
+    left = mark%n_bytes
+    if (status == 0 .and. n_there < left) then
+      status = -1
+      reason = "it is shorter than it was"
+    end if
+    do while (status == 0 .and. left > 0_ip)
+      n = int(min(left, int(block_size, ip)))
+      read (unit, iostat=status, iomsg=reason) block(:n)
+      checksum = checksum_of_text(checksum, block(:n))
+      left = left - n
+    end do
+    if (status == 0 .and. checksum /= mark%checksum) then
+      status = -1
+      reason = "its first lines are not those that were written"
+    end if
+    if (status /= 0) then
+      call make_error(error, exit_file, "error: cannot go on with '"//path//"': "//trim(reason) &
+                      //": expected the file of the interrupted run, or another folder (-o DIR)")
+    end if
+    close (unit, iostat=status)
+  end subroutine check_text_file
+
+  !> Opens a file to go on behind a mark; what is behind it is lost.
+  subroutine resume_text_file(file, path, mark, error)
+    type(text_file_t), intent(out) :: file           !! ready for write_line
+    character(*), intent(in) :: path                 !! file that was checked
+    type(text_mark_t), intent(in) :: mark            !! where it stood
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+
+    call append_to_text_file(file, path, error)
+    if (allocated(error)) return
+    file%mark = mark
+    if (c_truncate(c_descriptor(file%stream), int(mark%n_bytes, c_long)) /= 0_c_int) then
+      call system_failure(error, "write", path)
+    end if
+  end subroutine resume_text_file
+
+  !> Opens a file for writing behind what is there.
+  subroutine append_to_text_file(file, path, error)
+    type(text_file_t), intent(out) :: file           !! ready for write_line
+    character(*), intent(in) :: path                 !! file; need not be there
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+
+    file%path = path
+    file%stream = c_open(path//c_null_char, "a"//c_null_char)
+    file%is_open = c_associated(file%stream)
+    if (.not. file%is_open) call system_failure(error, "write", path)
+  end subroutine append_to_text_file
 
   !> Closes a file; no effect on a closed one.
   subroutine close_text_file(file, error)

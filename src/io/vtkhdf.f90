@@ -8,11 +8,13 @@ module mpm_vtkhdf
   use mpm_hdf5_file, only: close_hdf5_file, create_hdf5_file, hdf5_file_t, make_group, &
                            publish_hdf5_file, write_integers_attribute, write_text_attribute
   use mpm_hdf5_series, only: append_rows, create_series, kind_float64, kind_int32, &
-                             kind_int64, kind_uint8, series_layout_t, series_t
+                             kind_int64, kind_uint8, row_count, series_layout_t, series_t
+  use mpm_hdf5_resume, only: refuse_resume, resume_rows
   use mpm_kinds, only: dp, ip
+  use mpm_output_mark, only: file_mark_t
   implicit none
   private
-  public :: vtkhdf_t, close_vtkhdf, create_vtkhdf, flush_vtkhdf
+  public :: vtkhdf_t, close_vtkhdf, create_vtkhdf, flush_vtkhdf, mark_vtkhdf, resume_vtkhdf
   public :: add_field, begin_vtk_step, repeat_field, write_cells, write_field, write_integer_field
   public :: on_cells, on_points, vtk_tetra, vtk_triangle, vtk_vertex, chunk_for, in_space
 
@@ -160,8 +162,8 @@ contains
     n_corners = size(node, 1, ip)
     n_cells = size(node, 2, ip)
     associate (cells => vtk%cells, file => vtk%file)
-      cells%first_cell = cells%types%n_rows
-      cells%first_id = cells%connectivity%n_rows
+      cells%first_cell = row_count(cells%types, file)
+      cells%first_id = row_count(cells%connectivity, file)
       call append_rows(cells%n_points, file, [int(n_points, ip)], error)
       call append_rows(cells%n_cells, file, [n_cells], error)
       call append_rows(cells%n_ids, file, [n_corners*n_cells], error)
@@ -182,9 +184,9 @@ contains
     vtk%n_steps = vtk%n_steps + 1
     associate (steps => vtk%steps, file => vtk%file)
       call append_rows(steps%time, file, [time], error)
-      call append_rows(steps%part, file, [vtk%cells%n_points%n_rows - 1_ip], error)
+      call append_rows(steps%part, file, [row_count(vtk%cells%n_points, file) - 1_ip], error)
       call append_rows(steps%n_parts, file, [1_ip], error)
-      call append_rows(steps%point, file, [vtk%points%n_rows], error)
+      call append_rows(steps%point, file, [row_count(vtk%points, file)], error)
       call append_rows(steps%cell, file, [vtk%cells%first_cell], error)
       call append_rows(steps%id, file, [vtk%cells%first_id], error)
     end associate
@@ -198,7 +200,7 @@ contains
     real(dp), intent(in) :: values(:, :)               !! (components, n)
     type(error_t), allocatable, intent(inout) :: error !! exit_file
 
-    vtk%field(i)%last_offset = vtk%field(i)%values%n_rows
+    vtk%field(i)%last_offset = row_count(vtk%field(i)%values, vtk%file)
     call repeat_field(vtk, i, error)
     call append_rows(vtk%field(i)%values, vtk%file, values, error)
   end subroutine write_field
@@ -210,7 +212,7 @@ contains
     integer, intent(in) :: values(:)                   !! (n)
     type(error_t), allocatable, intent(inout) :: error !! exit_file
 
-    vtk%field(i)%last_offset = vtk%field(i)%values%n_rows
+    vtk%field(i)%last_offset = row_count(vtk%field(i)%values, vtk%file)
     call repeat_field(vtk, i, error)
     call append_rows(vtk%field(i)%values, vtk%file, int(values, ip), error)
   end subroutine write_integer_field
@@ -233,6 +235,40 @@ contains
                                   error)
     call publish_hdf5_file(vtk%file, error)
   end subroutine flush_vtkhdf
+
+  !> Where a file stands after a flush.
+  pure subroutine mark_vtkhdf(vtk, mark)
+    type(vtkhdf_t), intent(in) :: vtk       !! open
+    type(file_mark_t), intent(out) :: mark
+
+    mark%n_steps = int(vtk%n_steps, ip)
+    mark%first_cell = vtk%cells%first_cell
+    mark%first_id = vtk%cells%first_id
+    mark%last_offset = vtk%field%last_offset
+    mark%n_rows = vtk%file%dataset%n_rows
+  end subroutine mark_vtkhdf
+
+  !> Takes the steps up to a mark from the file with the same path, which the run to go on with
+  !! has left; all fields must have been added.
+  subroutine resume_vtkhdf(vtk, mark, object, run_id, error)
+    type(vtkhdf_t), intent(inout) :: vtk               !! without steps; stands at the mark then
+    type(file_mark_t), intent(in) :: mark              !! where the file stood
+    character(*), intent(in) :: object                 !! group with the attribute run
+    character(*), intent(in) :: run_id                 !! of the run to go on with
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+
+    if (allocated(error)) return
+    if (size(mark%last_offset) /= size(vtk%field)) then
+      call refuse_resume(error, vtk%file%path, "the deck asks for other fields")
+      return
+    end if
+    call resume_rows(vtk%file, mark%n_rows, object, run_id, error)
+    vtk%n_steps = int(mark%n_steps)
+    vtk%cells%first_cell = mark%first_cell
+    vtk%cells%first_id = mark%first_id
+    vtk%field%last_offset = mark%last_offset
+    call write_integers_attribute(vtk%file, "/VTKHDF/Steps", "NSteps", [mark%n_steps], error)
+  end subroutine resume_vtkhdf
 
   !> Closes a file; no effect on a closed one. After an error the steps since the last flush are
   !! lost, and a file that was never flushed is not there.

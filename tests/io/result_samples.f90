@@ -151,6 +151,7 @@ contains
     info%compiler = "GNU 12"
     info%libraries = "HDF5 1.10"
     info%started = "2024-02-03T04:05:06+01:00"
+    info%run_id = "20240203T040506.789+0100-42"
     info%n_threads = 2
     info%quiet = .true.
   end subroutine make_sample_info
