@@ -5,7 +5,7 @@ module mpm_run_job
   use mpm_deck_card, only: deck_t, folder_of
   use mpm_deck_signature, only: deck_signature
   use mpm_diagnostics, only: diagnostics_t, to_error, warnings_text
-  use mpm_error, only: error_t, exit_deck, exit_expectation, exit_ok
+  use mpm_error, only: error_t, exit_deck, exit_expectation, exit_file, exit_ok, make_error
   use mpm_expectations, only: n_failed_expectations, verdict_line
   use mpm_external_force, only: prepare_loads
   use mpm_increments, only: begin_step, schedule_t, start_increment
@@ -15,10 +15,13 @@ module mpm_run_job
   use mpm_log_model, only: model_text
   use mpm_model, only: formulation_fbar, formulation_standard, model_t
   use mpm_model_builder, only: build_model
+  use mpm_output_mark, only: output_mark_t, read_mark
+  use mpm_output_resume, only: resume_output
   use mpm_restart_load, only: load_restart
   use mpm_restart_point, only: place_text
   use mpm_restart_state, only: restart_t
-  use mpm_result_paths, only: existing_results, make_folder, result_paths, result_paths_t
+  use mpm_result_paths, only: are_there_results, existing_results, make_folder, result_paths, &
+                              result_paths_t
   use mpm_run_log, only: log_message
   use mpm_run_output, only: close_output, open_output, run_output_t
   use mpm_run_state, only: make_run_info, run_info_t, run_state_t
@@ -154,18 +157,22 @@ contains
         return
       end if
     end if
-    restart%deck_signature = deck_signature(deck)
-    restart%formulation = info%formulation
-    restart%written_by = info%version//" "//info%git
     folder = options%output
     if (len(folder) == 0) folder = folder_of(options%deck)
     call make_folder(folder, error)
     if (allocated(error)) return
     paths = result_paths(folder, model%job)
-    if (.not. options%force) call existing_results(paths, error)
+    if (restart%is_loaded) then
+      call open_restarted(output, paths, model, info, restart, options, error)
+    else
+      if (.not. options%force) call existing_results(paths, error)
+      if (allocated(error)) return
+      call open_output(output, paths, model, info, error)
+    end if
     if (allocated(error)) return
-    call open_output(output, paths, model, info, error)
-    if (allocated(error)) return
+    restart%deck_signature = deck_signature(deck)
+    restart%formulation = info%formulation
+    restart%written_by = info%version//" "//info%git
     call catch_signals()
     call solve_job(output, state, model, restart, options%check, failure)
     if (allocated(failure)) then
@@ -179,6 +186,37 @@ contains
     if (options%quiet .and. exit_code == exit_expectation) call print_failures(output)
     if (allocated(failure)) call move_alloc(failure, error)
   end subroutine run_formulation
+
+  !> Opens the files of a run that goes on: beside its results these are continued, elsewhere new
+  !! ones begin with the state of the restart.
+  subroutine open_restarted(output, paths, model, info, restart, options, error)
+    type(run_output_t), intent(out)  :: output       !! open
+    type(result_paths_t), intent(in) :: paths        !! files of the job
+    type(model_t), intent(in)        :: model        !! at time zero
+    type(run_info_t), intent(in)     :: info
+    type(restart_t), intent(in)      :: restart      !! loaded
+    type(command_line_t), intent(in) :: options
+    type(error_t), allocatable, intent(out) :: error !! exit_file: results that do not fit
+    type(output_mark_t) :: mark
+    character(:), allocatable :: message
+    logical :: is_mark
+
+    message = "restarted "//info%started//" from "//options%restart//" at "//place_text(restart)// &
+              ", written by Tessera "//restart%written_by
+    if (are_there_results(paths)) then
+      call read_mark(mark, restart%output_mark, is_mark)
+      if (is_mark) then
+        call resume_output(output, paths, model, info, mark, message, error)
+      else
+        call make_error(error, exit_file, "error: restart file '"//options%restart// &
+                        "' does not fit: output_mark: expected where the results stand")
+      end if
+      output%is_resumed = .not. allocated(error)
+      if (output%is_resumed .or. .not. options%force) return
+    end if
+    call open_output(output, paths, model, info, error)
+    if (.not. allocated(error)) call log_message(output%log, message, error)
+  end subroutine open_restarted
 
   !> What was run, what came out and where it is.
   subroutine print_summary(output, paths, model, options)

@@ -114,6 +114,7 @@ contains
     call exchange_run_state(record, restart%state, error)
     call exchange_starts(record, model, restart%schedule%step, error)
     call exchange_body(record, restart, model%mesh%n_el, error)
+    call exchange_text(record, "output_mark", restart%output_mark, error)
     call exchange_text(record, "verdicts", restart%verdicts, error)
     call exchange_reals(record, "seconds", shape(restart%seconds), restart%seconds, error)
     call exchange_integer(record, "n_attempts", restart%n_attempts, error)

@@ -3,6 +3,8 @@ module mpm_restart_output
   use mpm_error, only: error_t
   use mpm_expectations, only: evaluate_expectations
   use mpm_model, only: model_t
+  use mpm_output_mark, only: mark_text, output_mark_t
+  use mpm_output_resume, only: take_mark
   use mpm_restart_state, only: restart_t
   use mpm_run_output, only: run_output_t
   use mpm_verdict_record, only: restore_verdicts, verdicts_text
@@ -16,7 +18,10 @@ contains
   subroutine note_output(restart, output)
     type(restart_t), intent(inout) :: restart !! takes it
     type(run_output_t), intent(in) :: output  !! after an accepted increment
+    type(output_mark_t) :: mark
 
+    call take_mark(output, mark)
+    restart%output_mark = mark_text(mark)
     restart%verdicts = verdicts_text(output%verdict)
     restart%seconds = output%log%seconds
     restart%n_attempts = output%log%n_attempts

@@ -29,6 +29,7 @@ module mpm_restart_state
     character(:), allocatable :: formulation   !! standard or fbar
     character(:), allocatable :: deck_signature  !! see mpm_deck_signature
     character(:), allocatable :: model_signature !! see mpm_model_signature
+    character(:), allocatable :: output_mark   !! where its result files stand, see mpm_output_mark
     character(:), allocatable :: verdicts      !! expectations that were decided, a line each
     real(dp) :: seconds(5) = 0.0_dp            !! CPU by kind of work, for the log [s]
     integer  :: n_attempts = 0                 !! increments tried

@@ -5,7 +5,7 @@ module mpm_result_paths
   use mpm_error, only: error_t, exit_file, make_error
   implicit none
   private
-  public :: result_paths_t, existing_results, make_folder, result_paths
+  public :: result_paths_t, are_there_results, existing_results, make_folder, result_paths
 
   !> The files of a job.
   type :: result_paths_t
@@ -82,13 +82,30 @@ contains
     type(result_paths_t), intent(in) :: paths          !! files that a run would write
     type(error_t), allocatable, intent(out) :: error   !! exit_file with the first file found
 
+    call refuse_results(paths, error)
+    if (.not. allocated(error)) call refuse_existing(paths%restart, error)
+  end subroutine existing_results
+
+  !> Whether a file of an earlier run is there, restart files apart.
+  logical function are_there_results(paths) result(found)
+    type(result_paths_t), intent(in) :: paths !! files that a run would write
+    type(error_t), allocatable :: error
+
+    call refuse_results(paths, error)
+    found = allocated(error)
+  end function are_there_results
+
+  !> Reports the first file of an earlier run, restart files apart.
+  subroutine refuse_results(paths, error)
+    type(result_paths_t), intent(in) :: paths        !! files that a run would write
+    type(error_t), allocatable, intent(out) :: error !! exit_file if one is there
+
     call refuse_existing(paths%log, error)
     if (.not. allocated(error)) call refuse_existing(paths%status, error)
     if (.not. allocated(error)) call refuse_existing(paths%history, error)
     if (.not. allocated(error)) call refuse_existing(paths%points, error)
     if (.not. allocated(error)) call refuse_existing(paths%mesh, error)
-    if (.not. allocated(error)) call refuse_existing(paths%restart, error)
-  end subroutine existing_results
+  end subroutine refuse_results
 
   !> Reports a file that exists.
   subroutine refuse_existing(path, error)

@@ -89,6 +89,7 @@ contains
     type(run_info_t), intent(in) :: info             !! deck and program
     type(error_t), allocatable, intent(out) :: error !! exit_file
 
+    output%paths = paths
     call open_results(output%results, paths%points, paths%mesh, model, error)
     if (.not. allocated(error)) then
       call open_tables(output%tables, output%results%points%file, output%column, info, &
