@@ -1,0 +1,122 @@
+"""SIGKILL at any moment: every result file stays readable up to the last accepted increment.
+
+TESSERA_KILLS is the number of moments, 50 by default. The run prints how many it survived.
+"""
+
+import csv
+import os
+import random
+import time
+
+import pytest
+import pyvista
+from small_runs import (
+    FILES,
+    JOB,
+    Disturbance,
+    SmallRun,
+    build_faults,
+    check_part,
+    check_tables,
+    complete_lines,
+    n_converged,
+)
+from tessera_post.job import open_job
+
+N_KILLS = int(os.environ.get("TESSERA_KILLS", "50"))
+SIGKILLED = -9
+SEED = 20260
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory):
+    return build_faults(tmp_path_factory.mktemp("library"))
+
+
+def check_texts(folder, whole):
+    """The lines of the status file and of the history are those of a whole run as far as they go."""
+    lines = complete_lines(folder / f"{JOB}_history.csv")
+    expected = complete_lines(whole / f"{JOB}_history.csv")
+    assert lines == expected[: len(lines)]
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    assert all(float(row["time"]) >= 0.0 for row in rows)
+    for line in complete_lines(folder / f"{JOB}.sta")[1:]:
+        assert len(line.split()) >= 13
+    return len(rows) - 1
+
+
+def check_remains(folder, whole, expected, draw):
+    """Everything that must hold of the files after a kill."""
+    run = SmallRun.__new__(SmallRun)
+    run.folder = folder
+    found = run.results
+    converged = n_converged(folder)
+    written = check_texts(folder, whole)
+    if found[0] is None:
+        assert converged == 0
+        return
+    n_steps = check_part(found[0], expected[0], FILES[0])
+    n_increments = check_tables(found[0], FILES[0])
+    assert converged - 1 <= n_increments <= converged
+    assert n_increments <= written
+    assert n_steps == n_increments + 1
+    if found[1] is not None:
+        assert n_steps - 1 <= check_part(found[1], expected[1], FILES[1]) <= n_steps
+    else:
+        assert n_increments == 0
+    job = open_job(str(folder / JOB))
+    assert job.n_increments == n_increments
+    assert job.points.note == ""
+    assert len(job.points.field("S", job.output_of())) == job.points.n_points(job.output_of())
+    job.close()
+    if draw:
+        for name in FILES:
+            reader = pyvista.get_reader(str(folder / name)).reader
+            for step in range(reader.GetNumberOfSteps()):
+                reader.SetStep(step)
+                reader.Update()
+
+
+def test_killed_run_leaves_whole_files(tessera, library, tmp_path):
+    """Kills before, in the middle of and after calls that write, and a few at random times."""
+    whole = SmallRun(tessera, library, tmp_path / "whole")
+    start = time.monotonic()
+    assert whole.run().returncode == 0
+    duration = time.monotonic() - start
+    expected = whole.results
+    killed = SmallRun(tessera, library, tmp_path / "killed")
+    moments = random.Random(SEED)
+    survived = 0
+    for i in range(N_KILLS):
+        killed.clear()
+        if i % 10 == 9:
+            with killed.start() as process:
+                time.sleep(moments.uniform(0.0, duration))
+                process.kill()
+            assert process.returncode in (SIGKILLED, 0)
+        else:
+            do = moments.choice(("kill-before", "kill-half", "kill-half", "kill-after"))
+            fault = Disturbance(do, moments.randrange(1, whole.n_calls + 1))
+            assert killed.run(fault).returncode == SIGKILLED, fault
+        check_remains(killed.folder, whole.folder, expected, draw=i % 10 == 0)
+        survived += 1
+    print(f"kills tried {N_KILLS}, survived {survived}")
+    killed.clear()
+    assert killed.run().returncode == 0
+    check_remains(killed.folder, whole.folder, expected, draw=False)
+    assert not list(killed.folder.glob("*.next"))
+
+
+@pytest.mark.parametrize("calls", ["exchange", "exchange,link"])
+def test_file_system_that_cannot_exchange_names(tessera, library, tmp_path, calls):
+    """The old file gets a second name, or there is a new copy each time; kills spoil nothing."""
+    whole = SmallRun(tessera, library, tmp_path / "whole")
+    assert whole.run().returncode == 0
+    expected = whole.results
+    other = SmallRun(tessera, library, tmp_path / "other")
+    result = other.run(Disturbance("22", 1, 1_000_000, calls))
+    assert result.returncode == 0, result.stderr
+    for found, wanted, name in zip(other.results, expected, FILES):
+        assert check_part(found, wanted, name) == 9
+    left = sorted(path.name for path in other.folder.iterdir())
+    assert not [name for name in left if name.endswith((".next", ".former"))]
