@@ -1,18 +1,15 @@
-!> Copies from one HDF5 file to another: whole objects, or rows of a dataset to one of the same
-!! layout as they are stored, without unpacking them. A chunk holds all columns of its rows.
+!> Copies rows of a dataset to one of the same layout in another file as they are stored, without
+!! unpacking them. A chunk holds all columns of its rows.
 ! allow(assumed-size)
 module mpm_hdf5_copy
   use, intrinsic :: iso_c_binding, only: c_int, c_int32_t, c_int64_t, c_size_t
-  use hdf5, only: h5_index_name_f, h5_iter_inc_f, h5dget_create_plist_f, h5dget_space_f, &
-                  h5dset_extent_f, h5gget_info_f, h5lget_name_by_idx_f, h5ocopy_f, h5pclose_f, &
+  use hdf5, only: h5dget_create_plist_f, h5dget_space_f, h5dset_extent_f, h5pclose_f, &
                   h5pget_chunk_f, h5sclose_f, h5sget_simple_extent_dims_f, &
                   h5sget_simple_extent_ndims_f, hid_t, hsize_t
   use mpm_kinds, only: ip
   implicit none
   private
-  public :: copy_objects, copy_rows, dataset_rows, dataset_shape
-
-  integer, parameter :: longest_name = 80 !! of an object in the root group
+  public :: copy_rows, dataset_rows, dataset_shape
 
   integer(c_int64_t), parameter :: default_transfer = 0_c_int64_t !! H5P_DEFAULT
 
@@ -55,23 +52,6 @@ module mpm_hdf5_copy
   end interface
 
 contains
-
-  !> Copies everything below the root group, with attributes.
-  subroutine copy_objects(from, to, status)
-    integer(hid_t), intent(in) :: from   !! open file
-    integer(hid_t), intent(in) :: to     !! open file without objects
-    integer, intent(out)       :: status !! < 0: failed
-    character(longest_name) :: name
-    integer(hsize_t) :: i
-    integer :: n_links, largest, storage
-
-    call h5gget_info_f(from, storage, n_links, largest, status)
-    do i = 0_hsize_t, int(n_links, hsize_t) - 1_hsize_t
-      if (status < 0) return
-      call h5lget_name_by_idx_f(from, ".", h5_index_name_f, h5_iter_inc_f, i, name, status)
-      if (status >= 0) call h5ocopy_f(from, trim(name), to, trim(name), status)
-    end do
-  end subroutine copy_objects
 
   !> Rows of a dataset of one or two dimensions.
   subroutine dataset_rows(dataset, n_rows, status)

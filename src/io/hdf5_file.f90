@@ -12,9 +12,10 @@ module mpm_hdf5_file
                   h5open_f, h5p_file_access_f, h5pclose_f, h5pcreate_f, h5pset_fclose_degree_f, &
                   hid_t
   use mpm_error, only: error_t, exit_file, make_error
+  use mpm_file_bytes, only: copy_file
   use mpm_file_exchange, only: exchange_file, remove_file, replace_file, sync_file
   use mpm_hdf5_attribute, only: put_integers_attribute, put_text, put_text_attribute
-  use mpm_hdf5_copy, only: copy_objects, copy_rows, dataset_rows
+  use mpm_hdf5_copy, only: copy_rows, dataset_rows
   use mpm_hdf5_failure, only: hdf5_failure
   use mpm_kinds, only: ip
   implicit none
@@ -94,6 +95,7 @@ contains
         call h5fcreate_f(file%path//suffix, h5f_acc_trunc_f, file%id, status, access_prp=access)
       else
         call h5fopen_f(file%path//suffix, h5f_acc_rdwr_f, file%id, status, access)
+        if (status < 0) file%id = -1_hid_t
       end if
     end if
     if (status >= 0) call h5pclose_f(access, status) ! would hide the reason of a failure
@@ -146,32 +148,50 @@ contains
     type(hdf5_file_t), intent(inout) :: file           !! its copy is open and complete
     logical, intent(in) :: kept                        !! the file published before can catch up
     type(error_t), allocatable, intent(inout) :: error !! exit_file
-    integer(hid_t) :: source
     integer :: ignored, status
 
-    call h5fopen_f(file%path, h5f_acc_rdonly_f, source, status)
-    if (status < 0) then
-      call fail_hdf5_file(file, "read", error)
-      return
-    end if
     status = -1
-    if (kept .and. .not. file%has_new_objects) call catch_up(file, source, status)
+    if (kept .and. .not. file%has_new_objects) call catch_up(file, status)
     if (status < 0) then ! a reader holds the former file, or somebody has put another one there
       if (file%id >= 0_hid_t) call h5fclose_f(file%id, ignored)
       file%dataset%id = -1_hid_t
+      file%id = -1_hid_t
       call remove_file(file%path//suffix)
-      call open_copy(file, .true., status)
-      if (status >= 0) call copy_objects(source, file%id, status)
+      call copy_file(file%path, file%path//suffix, error)
+      file%has_failed = allocated(error)
+      if (allocated(error)) return
+      call open_copy(file, .false., status)
+      if (status < 0) call fail_hdf5_file(file, "write", error)
     end if
-    if (status < 0) call fail_hdf5_file(file, "write", error)
-    call h5fclose_f(source, ignored)
     file%dataset%n_published = file%dataset%n_rows
     deallocate (file%attribute)
     allocate (file%attribute(0))
   end subroutine prepare_copy
 
   !> Brings the file that was published before to the state of the one that is published now.
-  subroutine catch_up(file, source, status)
+  subroutine catch_up(file, status)
+    type(hdf5_file_t), intent(inout) :: file !! its copy is open
+    integer, intent(out) :: status           !! < 0: failed
+    integer(hid_t) :: source
+    integer :: i, ignored
+
+    call open_copy(file, .false., status)
+    if (status < 0) return
+    call h5fopen_f(file%path, h5f_acc_rdonly_f, source, status)
+    if (status < 0) return
+    call copy_new_rows(file, source, status)
+    call h5fclose_f(source, ignored)
+    do i = 1, size(file%attribute)
+      if (status < 0) return
+      associate (attribute => file%attribute(i))
+        call put_integers_attribute(file%id, attribute%object, attribute%name, attribute%values, &
+                                    status)
+      end associate
+    end do
+  end subroutine catch_up
+
+  !> Copies the rows that the published file has got last.
+  subroutine copy_new_rows(file, source, status)
     type(hdf5_file_t), intent(inout) :: file !! its copy is open
     integer(hid_t), intent(in) :: source     !! published file
     integer, intent(out) :: status           !! < 0: failed
@@ -179,8 +199,7 @@ contains
     integer(ip) :: n_rows
     integer :: i, ignored
 
-    call open_copy(file, .false., status)
-    if (status < 0) file%id = -1_hid_t
+    status = 0
     do i = 1, size(file%dataset)
       associate (dataset => file%dataset(i))
         if (dataset%n_rows == dataset%n_published) cycle
@@ -194,14 +213,7 @@ contains
         if (status < 0) return
       end associate
     end do
-    do i = 1, size(file%attribute)
-      associate (attribute => file%attribute(i))
-        call put_integers_attribute(file%id, attribute%object, attribute%name, attribute%values, &
-                                    status)
-        if (status < 0) return
-      end associate
-    end do
-  end subroutine catch_up
+  end subroutine copy_new_rows
 
   !> Publishes what is new and closes a file; no effect on a closed one. After an error it is
   !! closed without being published.

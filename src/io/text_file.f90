@@ -4,13 +4,14 @@
 !! line goes to the operating system in one call.
 ! allow(assumed-size)
 module mpm_text_file
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_intptr_t, c_loc, &
-                                         c_long, c_null_char, c_null_ptr, c_ptr, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_intptr_t, c_long, &
+                                         c_null_char, c_null_ptr, c_ptr
   use mpm_checksum, only: checksum_of_text
   use mpm_error, only: error_t, exit_file, make_error
+  use mpm_file_bytes, only: put_bytes
   use mpm_kinds, only: ip
   use mpm_output_mark, only: text_mark_t
-  use mpm_system_failure, only: error_number, system_failure
+  use mpm_system_failure, only: system_failure
   implicit none
   private
   public :: text_file_t, close_text_file, ignore_size_signal, open_text_file, write_line
@@ -18,7 +19,6 @@ module mpm_text_file
 
   integer(c_int), parameter :: size_signal = 25_c_int      !! SIGXFSZ of Linux
   integer(c_intptr_t), parameter :: ignored = 1_c_intptr_t !! SIG_IGN
-  integer(c_int), parameter :: interrupted = 4_c_int       !! EINTR of Linux
   integer, parameter :: block_size = 65536                 !! bytes read at once
 
   !> An open text file.
@@ -45,16 +45,6 @@ module mpm_text_file
       type(c_ptr), value :: stream
       integer(c_int) :: descriptor
     end function c_descriptor
-
-    !> Hands bytes to the operating system; returns how many it took, -1 if that fails.
-    function c_write(descriptor, bytes, n) bind(c, name="write") result(n_written)
-      import :: c_int, c_ptr, c_size_t
-      implicit none
-      integer(c_int), value :: descriptor
-      type(c_ptr), value :: bytes
-      integer(c_size_t), value :: n
-      integer(c_size_t) :: n_written
-    end function c_write
 
     !> Cuts an open file to a length; not 0 if that fails.
     function c_truncate(descriptor, length) bind(c, name="ftruncate") result(status)
@@ -110,26 +100,17 @@ contains
     type(text_file_t), intent(in) :: file            !! open file
     character(*), intent(in) :: line                 !! without line end; may hold several lines
     type(error_t), allocatable, intent(out) :: error !! exit_file, for example a full disk
-    character(kind=c_char), allocatable, target :: bytes(:)
-    integer(c_size_t) :: n_done, n_taken
+    character(kind=c_char), allocatable :: bytes(:)
     integer :: i
+    logical :: done
 
     allocate (bytes(len(line) + 1))
     do i = 1, len(line)
       bytes(i) = line(i:i)
     end do
     bytes(size(bytes)) = new_line("a")
-    n_done = 0_c_size_t
-    do while (n_done < size(bytes, kind=c_size_t))
-      n_taken = c_write(c_descriptor(file%stream), c_loc(bytes(n_done + 1)), &
-                        size(bytes, kind=c_size_t) - n_done)
-      if (n_taken > 0_c_size_t) then
-        n_done = n_done + n_taken
-      else if (n_taken == 0_c_size_t .or. error_number() /= interrupted) then
-        call system_failure(error, "write", file%path)
-        return
-      end if
-    end do
+    call put_bytes(c_descriptor(file%stream), bytes, done)
+    if (.not. done) call system_failure(error, "write", file%path)
   end subroutine write_line
 
   !> Writes a line and keeps count of length and checksum of the file.

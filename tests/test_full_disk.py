@@ -1,0 +1,219 @@
+"""Disks that are full, slow to answer, read-only or gone: exit code 8, a message, and whole files."""
+
+import errno
+import os
+import random
+import shutil
+import subprocess
+import sys
+import time
+
+import pytest
+from small_runs import (
+    DECK,
+    FILES,
+    JOB,
+    Disturbance,
+    SmallRun,
+    build_faults,
+    check_part,
+    check_tables,
+    complete_lines,
+    contents,
+    n_converged,
+)
+
+EXIT_FILE = 8
+FOREVER = 1_000_000
+CHANGING = "write,sync,truncate,rename,exchange,open"
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory):
+    return build_faults(tmp_path_factory.mktemp("library"))
+
+
+@pytest.fixture(scope="module")
+def whole(tessera, library, tmp_path_factory):
+    """A run that nothing disturbs."""
+    run = SmallRun(tessera, library, tmp_path_factory.mktemp("whole"))
+    assert run.run(Disturbance("0", 0, calls=CHANGING)).returncode == 0
+    return run
+
+
+def check_error(process, reason):
+    """Whether a run ended as it must: one message with path and reason."""
+    assert process.returncode == EXIT_FILE, process.stderr
+    assert process.stderr.count("\n") == 1, process.stderr
+    assert process.stderr.startswith("error: cannot "), process.stderr
+    assert f"{JOB}" in process.stderr
+    assert process.stderr.endswith(f": {reason}\n"), process.stderr
+
+
+def check_files(folder, whole):
+    """Whether the result files are whole, as far as they go, and nothing else is left."""
+    for name, expected in zip(FILES, whole.results):
+        found = contents(folder / name)
+        if found is None:
+            assert n_converged(folder) == 0
+            continue
+        check_part(found, expected, name)
+        if "tessera" in found or name == FILES[0]:
+            n_increments = check_tables(found, name)
+            assert n_converged(folder) - 1 <= n_increments <= n_converged(folder)
+    assert not list(folder.glob("*.next"))
+
+
+@pytest.mark.parametrize("reason", ["ENOSPC", "EDQUOT", "EIO", "EROFS"])
+def test_refused_write_is_a_file_error(whole, tessera, library, tmp_path, reason):
+    """From some call on every change is refused, as on a full disk. Near the end a run may not
+    notice: what it writes last into the copies is not needed any more."""
+    number = getattr(errno, reason)
+    moments = random.Random(number)
+    last = whole.n_calls * 19 // 20
+    for at in [1, last, *moments.sample(range(2, last), 8)]:
+        run = SmallRun(tessera, library, tmp_path / str(at))
+        process = run.run(Disturbance(str(number), at, FOREVER, CHANGING))
+        check_error(process, os.strerror(number))
+        check_files(run.folder, whole)
+
+
+def test_full_disk_is_a_message_in_the_log(whole, tessera, library, tmp_path):
+    run = SmallRun(tessera, library, tmp_path / "run")
+    calls = [at for at in range(1, whole.n_calls, whole.n_calls // 10)]
+    for at in calls:
+        process = run.run(Disturbance(str(errno.ENOSPC), at, 1, "write"))
+        if process.returncode == EXIT_FILE and "vtkhdf" in process.stderr:
+            assert process.stderr in (run.folder / f"{JOB}.log").read_text()
+            return
+    pytest.fail("no write of a result file was refused")
+
+
+@pytest.mark.parametrize("do", ["short", str(errno.EINTR)])
+def test_interrupted_write_changes_nothing(whole, tessera, library, tmp_path, do):
+    """A write that was interrupted, or wrote a part, is gone on with."""
+    run = SmallRun(tessera, library, tmp_path / "run")
+    moments = random.Random(1)
+    for at in moments.sample(range(1, whole.n_calls), 10):
+        process = run.run(Disturbance(do, at, moments.choice((1, 5)), "write"))
+        assert process.returncode == 0, process.stderr
+        for name, expected, found in zip(FILES, whole.results, run.results):
+            assert check_part(found, expected, name) == 9
+        history = complete_lines(run.folder / f"{JOB}_history.csv")
+        assert history == complete_lines(whole.folder / f"{JOB}_history.csv")
+        assert n_converged(run.folder) == 8
+
+
+# --- file systems --------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """small_disk(kilobytes): a folder on a file system of its own, where one may be mounted."""
+    mounted = []
+
+    def make(kilobytes):
+        folder = tmp_path / "disk"
+        folder.mkdir()
+        command = ["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "tmpfs", str(folder)]
+        result = subprocess.run(command, capture_output=True, text=True, check=False)
+        if result.returncode != 0:
+            pytest.skip(f"no file system can be mounted: {result.stderr.strip()}")
+        mounted.append(folder)
+        return folder
+
+    yield make
+    for folder in mounted:
+        subprocess.run(["umount", "-l", str(folder)], check=False)
+
+
+def run_into(program, folder, deck_folder, every=1):
+    """Runs the job with its results in a folder."""
+    deck = deck_folder / f"{JOB}.inp"
+    deck.write_text(DECK.format(every=every), encoding="utf-8")
+    return subprocess.run(
+        [str(program), "-q", "-o", str(folder), str(deck)],
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
+@pytest.mark.parametrize("kilobytes", [4, 100, 200, 300, 400])
+def test_full_file_system(whole, tessera, small_disk, tmp_path, kilobytes):
+    folder = small_disk(kilobytes)
+    check_error(run_into(tessera, folder, tmp_path), "No space left on device")
+    check_files(folder, whole)
+
+
+def test_read_only_file_system(tessera, small_disk, tmp_path):
+    folder = small_disk(1000)
+    subprocess.run(["mount", "-o", "remount,ro", str(folder)], check=True)
+    check_error(run_into(tessera, folder, tmp_path), "Read-only file system")
+    assert not list(folder.iterdir())
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_folder_without_permission(tessera, tmp_path):
+    folder = tmp_path / "closed"
+    folder.mkdir(mode=0o500)
+    check_error(run_into(tessera, folder, tmp_path), "Permission denied")
+
+
+def test_folder_that_vanishes(tessera, library, tmp_path):
+    """Somebody removes the folder while the run is going on."""
+    run = SmallRun(tessera, library, tmp_path / "run")
+    text = DECK.format(every=1).replace("0.125, 1.0", "0.001, 1.0").replace("INC=50", "INC=2000")
+    deck = tmp_path / f"{JOB}.inp"
+    deck.write_text(text, encoding="utf-8")
+    command = [str(tessera), "-q", "-o", str(run.folder), str(deck)]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        while n_converged(run.folder) < 2:
+            assert process.poll() is None
+            time.sleep(0.01)
+        shutil.rmtree(run.folder)
+        _, stderr = process.communicate(timeout=60)
+    assert process.returncode == EXIT_FILE
+    assert stderr.startswith(f"error: cannot write '{run.folder}/{JOB}.vtkhdf': No such file or")
+
+
+# --- readers of a run that is going on -----------------------------------------------------------
+
+HOLD = """
+import sys, time, h5py
+from pathlib import Path
+for name in sys.argv[1:]:
+    while not Path(name).exists():
+        time.sleep(0.005)
+files = [h5py.File(name) for name in sys.argv[1:]]
+before = [(file["VTKHDF/Points"][()].tobytes(), file["VTKHDF/Steps"].attrs["NSteps"]) for file in files]
+print("open", flush=True)
+sys.stdin.readline()
+after = [(file["VTKHDF/Points"][()].tobytes(), file["VTKHDF/Steps"].attrs["NSteps"]) for file in files]
+assert before == after
+assert all(file["VTKHDF/Steps"].attrs["NSteps"] < 9 for file in files)
+print("unchanged", flush=True)
+"""
+
+
+def test_reader_keeps_the_file_that_it_opened(whole, tessera, library, tmp_path):
+    """The run goes on with a new copy and leaves the file that somebody has opened alone."""
+    run = SmallRun(tessera, library, tmp_path / "run")
+    paths = [str(run.folder / name) for name in FILES]
+    with (
+        subprocess.Popen(
+            [sys.executable, "-c", HOLD, *paths],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        ) as reader,
+        run.start() as process,
+    ):
+        assert reader.stdout.readline() == "open\n"
+        assert process.wait(timeout=60) == 0
+        out, _ = reader.communicate("\n", timeout=60)
+    assert (reader.returncode, out) == (0, "unchanged\n")
+    for name, expected, found in zip(FILES, whole.results, run.results):
+        assert check_part(found, expected, name) == 9
