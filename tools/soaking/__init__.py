@@ -1,0 +1,1 @@
+"""Long tests of the program: kills, hostile input, determinism. See docs/reliability.md."""
