@@ -37,6 +37,7 @@ def run_once(settings: Settings, threads: int) -> str:
     environment = {
         name: value for name, value in os.environ.items() if not name.startswith(SURROUNDINGS)
     }
+    environment["OMP_WAIT_POLICY"] = "passive"  # more threads than cores do not spin
     run = subprocess.run(
         [str(part) for part in command],
         cwd=settings.deck.parent,
