@@ -6,8 +6,9 @@ module mpm_external_force
   use mpm_kinds, only: dp
   use mpm_material_points, only: points_t
   use mpm_mesh, only: face_nodes, mesh_t
+  use mpm_place_text, only: place_text
   use mpm_surface_points, only: surface_of_point, surface_points_t
-  use mpm_text, only: integer_text, real_text
+  use mpm_text, only: integer_text
   implicit none
   private
   public :: load_t, load_gravity, load_pressure, load_traction, load_nodal
@@ -209,8 +210,7 @@ contains
     type(dof_map_t), intent(in) :: dofs              !! active nodes
     type(mesh_t), intent(in) :: mesh                 !! labels and surfaces
     type(surface_points_t), intent(in) :: surface    !! located
-    character(:), allocatable :: place
-    integer :: i, lost, node
+    integer :: lost, node
 
     node = loaded_inactive_node(f, dofs)
     if (node > 0) then
@@ -221,13 +221,10 @@ contains
     end if
     lost = lost_surface_point(loads, surface)
     if (lost == 0) return
-    place = real_text(surface%x(1, lost))
-    do i = 2, mesh%n_dim
-      place = place//", "//real_text(surface%x(i, lost))
-    end do
     call make_error(error, exit_lost_point, "error: the loaded surface '"// &
                     mesh%surface(surface_of_point(surface, lost))%name//"' lost the body at ("// &
-                    place//"): expected an element with material points nearer than its own size")
+                    place_text(surface%x(:, lost))//"): expected an element with material "// &
+                    "points nearer than its own size")
   end subroutine check_applied
 
   !> First surface point of a load that has no element to act on.
