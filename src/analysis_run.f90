@@ -1,5 +1,6 @@
 !> What an analysis carries from increment to increment.
 module mpm_analysis_run
+  use mpm_equilibrium, only: newton_report_t
   use mpm_increments, only: schedule_t
   use mpm_kinds, only: dp, ip
   use mpm_point_location, only: locator_t
@@ -15,6 +16,7 @@ module mpm_analysis_run
     type(system_t)   :: system
     type(schedule_t) :: schedule
     type(locator_t)  :: locator
+    type(newton_report_t) :: report           !! of the last attempt
     type(restart_t)  :: kept                  !! the run after the last accepted increment, without
                                               !! mesh and points, which change in none but that
     real(dp), allocatable :: u_start(:, :)    !! (n_dim, n)  displacements of the points at the

@@ -24,14 +24,14 @@ module mpm_solve_job
   use mpm_restart_output, only: restore_output
   use mpm_restart_point, only: keep_point, obey_requests, save_point
   use mpm_restart_state, only: restart_t
-  use mpm_run_failure, only: check_count, place_of, report_lost_point, shorten
+  use mpm_run_failure, only: check_count, check_held, memory_error, place_of, record_failure, &
+    refuse_mechanism, report_lost_point, shorten
   use mpm_run_output, only: run_output_t, write_attempt, write_increment, write_last_state
   use mpm_run_state, only: make_run_state, note_balance, note_checkerboard, note_constraints, &
                            run_state_t
   use mpm_sparsity, only: build_pattern, pattern_is_current
   use mpm_surface_points, only: locate_surface_points
   use mpm_system, only: body_t, find_active, free_system, open_system, system_t
-  use mpm_text, only: integer_text
   implicit none
   private
   public :: make_body, prepare_increment, solve_job
@@ -67,8 +67,12 @@ contains
       end if
       call solve_step(analysis, output, state, model, error)
     end do
-    if (allocated(error)) call keep_last_state(analysis, output, state, model, error%code)
     call free_system(analysis%system)
+    if (allocated(error)) then
+      call keep_last_state(analysis, output, state, model, error%code)
+      call record_failure(error, output%paths%failure, analysis%body, analysis%system, &
+                          analysis%report, analysis%schedule, model)
+    end if
   end subroutine solve_job
 
   !> The run at time zero, or where its restart file was written.
@@ -141,9 +145,9 @@ contains
     type(run_state_t), intent(inout)  :: state
     type(model_t), intent(inout)      :: model    !! not changed
     type(error_t), allocatable, intent(out) :: error
-    type(newton_report_t) :: report
 
-    associate (body => analysis%body, system => analysis%system, schedule => analysis%schedule)
+    associate (body => analysis%body, system => analysis%system, schedule => analysis%schedule, &
+               report => analysis%report)
       do while (.not. schedule%finished)
         call start_increment(schedule) ! size from the last outcome
         call prepare_increment(system, body, model, schedule, error) ! unknowns, pattern, loads
@@ -152,6 +156,7 @@ contains
           return
         end if
         call find_equilibrium(system, report, body, model%step(schedule%step)%newton)
+        call refuse_mechanism(report, body, schedule, model)
         call note_attempt(state, schedule, report, system, body)
         if (report%outcome == outcome_converged) call note_equilibrium(state, system, body, model)
         call write_attempt(output, state, report, error)
@@ -160,7 +165,9 @@ contains
           call obey_requests(analysis, output, model, error)
           return
         else if (report%outcome /= outcome_converged) then
-          call shorten(schedule, report, model, error)
+          call check_held(error, body, report, schedule, model)
+          if (allocated(error)) return
+          call shorten(schedule, report, system, model, error)
           if (allocated(error)) return
           cycle
         end if
@@ -196,6 +203,7 @@ contains
       call find_active(system, body%points)
       call locate_surface_points(body%surface, body%mesh, system%active)
       call note_location(state, schedule, location)
+      analysis%report%worst_point = location%first_lost
       if (output%metered) call note_checkerboard(state, body)
       call write_increment(output, model, body%mesh, body%points, state, error)
       if (allocated(error)) return
@@ -274,8 +282,7 @@ contains
                        system%active, system%ghost%node)
     call analyse(system%solver, system%tangent, outcome)
     if (outcome == solver_memory) then
-      call make_error(error, exit_solver, "error: not enough memory for the analysis of the "// &
-                      integer_text(system%dofs%n)//" equations")
+      call memory_error(error, system, "analysis")
     else if (outcome /= solver_ok) then
       call make_error(error, exit_solver, "error: the pattern of the tangent cannot be analysed")
     end if

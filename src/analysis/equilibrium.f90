@@ -1,12 +1,13 @@
 !> Newton's method for one increment.
 module mpm_equilibrium
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mpm_assembly, only: apply_tangent, assemble_tangent
   use mpm_dof_map, only: add_solution, gather_free
   use mpm_eigenvalues, only: eigenvalues_t, find_eigenvalues
   use mpm_ghost_penalty, only: add_ghost_force, add_ghost_tangent
   use mpm_interruption, only: received_signal
   use mpm_kinds, only: dp
-  use mpm_linear_solver, only: factorize, solve, solver_memory, solver_ok
+  use mpm_linear_solver, only: factorize, solve, solver_memory, solver_not_finite, solver_ok
   use mpm_nodal_frames, only: in_local_axes, part_along
   use mpm_system, only: body_t, evaluate, evaluation_inverted, evaluation_ok, system_t
   implicit none
@@ -15,6 +16,7 @@ module mpm_equilibrium
   public :: newton_settings_t, newton_report_t
   public :: outcome_converged, outcome_inverted, outcome_material, outcome_stagnated
   public :: outcome_iterations, outcome_singular, outcome_memory, outcome_interrupted
+  public :: outcome_not_finite
 
   integer, parameter :: outcome_converged = 0  !! equilibrium found
   integer, parameter :: outcome_inverted = 1   !! an active element turned inside out
@@ -24,6 +26,7 @@ module mpm_equilibrium
   integer, parameter :: outcome_singular = 5   !! tangent singular
   integer, parameter :: outcome_memory = 6     !! linear solver out of memory
   integer, parameter :: outcome_interrupted = 7 !! a signal asks to end
+  integer, parameter :: outcome_not_finite = 8 !! displacements or forces are infinite or no numbers
 
   !> Controls of Newton's method (*CONTROLS).
   type :: newton_settings_t
@@ -45,6 +48,7 @@ module mpm_equilibrium
     integer :: worst_point = 0             !! failed point, 0 if none
     integer :: n_plastic = 0               !! points that flowed in the last evaluation
     integer, allocatable :: flowing(:)     !! (0:n_iterations)  points that flow
+    real(dp) :: rcond = 1.0_dp             !! smallest over largest pivot, least one of all factors [-]
     type(eigenvalues_t) :: eigenvalues     !! of the last tangent, if they were asked for
   end type newton_report_t
 
@@ -118,12 +122,20 @@ contains
     call cpu_time(clock(2))
     call factorize(system%solver, system%tangent, outcome)
     call cpu_time(clock(3))
+    if (system%dofs%n > 0) report%rcond = min(report%rcond, system%solver%rcond)
     if (outcome == solver_ok) call solve(system%solver, system%tangent, rhs, newton%x, outcome)
     call cpu_time(clock(4))
     report%seconds(3:5, iteration) = report%seconds(3:5, iteration) + (clock(2:4) - clock(1:3))
-    if (outcome /= solver_ok) then
-      report%outcome = merge(outcome_memory, outcome_singular, outcome == solver_memory)
-    end if
+    select case (outcome)
+    case (solver_ok)
+      return
+    case (solver_memory)
+      report%outcome = outcome_memory
+    case (solver_not_finite)
+      report%outcome = outcome_not_finite
+    case default
+      report%outcome = outcome_singular
+    end select
   end subroutine correct
 
   !> Applies the correction, from the second one on halved until the residual falls.
@@ -177,6 +189,11 @@ contains
       report%outcome = merge(outcome_inverted, outcome_material, outcome == evaluation_inverted)
       report%worst_element = system%worst_element
       report%worst_point = system%worst_point
+      return
+    end if
+    ! Forces of nodes without unknowns too: they are the reactions.
+    if (.not. all(ieee_is_finite(system%f_int))) then
+      report%outcome = outcome_not_finite
       return
     end if
     call gather_free(system%dofs, system%f_ext - system%f_int, newton%residual)
@@ -270,6 +287,7 @@ contains
     case (outcome_singular); text = "the tangent is singular"
     case (outcome_memory); text = "the linear solver ran out of memory"
     case (outcome_interrupted); text = "interrupted"
+    case (outcome_not_finite); text = "displacements or forces are not finite"
     case default; text = "unknown outcome"
     end select
   end function outcome_text

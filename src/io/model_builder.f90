@@ -16,7 +16,7 @@ module mpm_model_builder
   use mpm_model, only: model_t
   use mpm_set_builder, only: build_sets
   use mpm_step_builder, only: build_steps
-  use mpm_support_check, only: find_free_modes
+  use mpm_support_check, only: find_free_modes, suggest_support
   use mpm_surface_points, only: sample_surfaces
   use mpm_text, only: integer_text
   implicit none
@@ -120,17 +120,20 @@ contains
     type(model_t), intent(in) :: model              !! complete
     type(deck_t), intent(in) :: deck                !! the deck
     type(build_context_t), intent(inout) :: context !! takes errors
-    character(:), allocatable :: modes
+    character(:), allocatable :: advice, modes
     integer :: i, element
 
     do i = 1, size(model%step)
       call find_free_modes(modes, element, model%mesh, model%points, model%step(i)%constraint, &
                            model%frames)
       if (element == 0) cycle
+      advice = suggest_support(element, model%mesh, model%points, model%step(i)%constraint, &
+                               model%frames)
+      if (len(advice) > 0) advice = ", such as "//advice
       call fault(context, deck, at_card(model%step(i)%card), "the body of element " &
                  //integer_text(model%mesh%parent_label(model%mesh%parent(element))) &
                  //" is free to move in this step ("//modes//"): expected *BOUNDARY conditions " &
-                 //"that hold it", code=exit_model)
+                 //"that hold it"//advice, code=exit_model)
     end do
   end subroutine check_supports
 

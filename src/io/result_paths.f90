@@ -18,6 +18,7 @@ module mpm_result_paths
     character(:), allocatable :: previous_restart !! JOB.restart.1.h5
     character(:), allocatable :: stop_request     !! JOB.stop, made by the user
     character(:), allocatable :: restart_request  !! JOB.restart, made by the user
+    character(:), allocatable :: failure !! JOB_fail.vtkhdf, only of a run that failed
   end type result_paths_t
 
   interface
@@ -75,6 +76,7 @@ contains
     paths%previous_restart = stem//".restart.1.h5"
     paths%stop_request = stem//".stop"
     paths%restart_request = stem//".restart"
+    paths%failure = stem//"_fail.vtkhdf"
   end function result_paths
 
   !> Refuses to go on when a file of an earlier run is there.
@@ -105,6 +107,7 @@ contains
     if (.not. allocated(error)) call refuse_existing(paths%history, error)
     if (.not. allocated(error)) call refuse_existing(paths%points, error)
     if (.not. allocated(error)) call refuse_existing(paths%mesh, error)
+    if (.not. allocated(error)) call refuse_existing(paths%failure, error)
   end subroutine refuse_results
 
   !> Reports a file that exists.

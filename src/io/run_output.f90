@@ -4,6 +4,7 @@ module mpm_run_output
   use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_text
   use mpm_error, only: error_t
   use mpm_expectations, only: collect_expectations, evaluate_expectations, is_expected, verdict_t
+  use mpm_file_exchange, only: remove_file
   use mpm_hdf5_file, only: publish_hdf5_file, write_text_attribute
   use mpm_history, only: open_history, units_of, write_history_row
   use mpm_history_columns, only: history_column_t, history_columns, history_values
@@ -57,6 +58,7 @@ contains
     type(error_t), allocatable, intent(out) :: error !! exit_file
 
     call prepare_output(output, model, info)
+    call remove_file(paths%failure) ! of an earlier run
     call open_log(output%log, paths%log, model, info, error)
     if (allocated(error)) return
     call open_status(output%status, paths%status, model, error)

@@ -6,9 +6,10 @@ module mpm_support_check
   use mpm_mesh, only: mesh_t
   use mpm_nodal_frames, only: in_global_axes, nodal_frames_t
   use mpm_tensor, only: cross_product
+  use mpm_text, only: integer_text
   implicit none
   private
-  public :: find_free_modes
+  public :: find_free_modes, find_hinge, suggest_support
 
   real(dp), parameter :: rank_tolerance = 1.0e-11_dp !! pivot over the largest one
 
@@ -25,15 +26,12 @@ contains
     type(nodal_frames_t), intent(in) :: frames       !! axes of the nodes
     integer, allocatable :: body(:)
     logical, allocatable :: fixed(:, :), seen(:)
-    integer :: i, e
+    integer :: e
 
     modes = ""
     element = 0
     allocate (seen(mesh%n_node), source=.false.)
-    allocate (fixed(mesh%n_dim, mesh%n_node), source=.false.)
-    do i = 1, size(constraint)
-      fixed(constraint(i)%direction, constraint(i)%node) = .true.
-    end do
+    fixed = held_directions(mesh, constraint)
     call label_bodies(body, mesh, points)
     do e = 1, mesh%n_el
       if (points%first(e + 1) == points%first(e)) cycle
@@ -45,6 +43,164 @@ contains
       return
     end do
   end subroutine find_free_modes
+
+  !> Directions of nodes that some constraint prescribes.
+  pure function held_directions(mesh, constraint) result(fixed)
+    type(mesh_t), intent(in) :: mesh               !! for its sizes
+    type(constraint_t), intent(in) :: constraint(:)  !! in force in the step
+    logical :: fixed(mesh%n_dim, mesh%n_node)
+    integer :: i
+
+    fixed = .false.
+    do i = 1, size(constraint)
+      fixed(constraint(i)%direction, constraint(i)%node) = .true.
+    end do
+  end function held_directions
+
+  !> Data lines of *BOUNDARY that would hold a body which is free, with node sets of the mesh: "X0, 1,
+  !! 1 and Y0, 2, 2". Each line takes away as many free modes as a line can; of equal ones a plane
+  !! that it fixes along its normal. Empty if the sets of the mesh cannot hold the body.
+  pure function suggest_support(element, mesh, points, constraint, frames) result(advice)
+    integer, intent(in) :: element                   !! of the body
+    type(mesh_t), intent(in) :: mesh                 !! where it is
+    type(points_t), intent(in) :: points             !! in this mesh
+    type(constraint_t), intent(in) :: constraint(:)  !! in force in the step
+    type(nodal_frames_t), intent(in) :: frames       !! axes of the nodes
+    character(:), allocatable :: advice
+    integer, allocatable :: body(:)
+    logical :: fixed(mesh%n_dim, mesh%n_node), member(mesh%n_node)
+    integer :: direction, set
+
+    call label_bodies(body, mesh, points)
+    member = body == body(mesh%node(1, element))
+    fixed = held_directions(mesh, constraint)
+    advice = ""
+    do while (len(free_modes(mesh, fixed, frames, member)) > 0)
+      call best_support(set, direction, mesh, fixed, frames, member)
+      if (set == 0) then
+        advice = ""
+        return
+      end if
+      fixed(direction, mesh%node_set(set)%item) = .true.
+      if (len(advice) > 0) advice = advice//" and "
+      advice = advice//mesh%node_set(set)%name//", "//integer_text(direction)//", "// &
+               integer_text(direction)
+    end do
+  end function suggest_support
+
+  !> The node set and the direction that take most free modes from a body.
+  pure subroutine best_support(set, direction, mesh, fixed, frames, member)
+    integer, intent(out) :: set        !! 0: none takes any
+    integer, intent(out) :: direction  !! 1..n_dim
+    type(mesh_t), intent(in) :: mesh   !! with node sets
+    logical, intent(in) :: fixed(:, :) !! (n_dim, n_node) prescribed
+    type(nodal_frames_t), intent(in) :: frames !! axes of the nodes
+    logical, intent(in) :: member(:)   !! (n_node) belongs to the body
+    logical :: trial(size(fixed, 1), size(fixed, 2))
+    integer :: best, d, i, n_before, worth
+
+    set = 0
+    direction = 0
+    best = 1
+    if (.not. allocated(mesh%node_set)) return
+    n_before = rank_of(held_modes(mesh, fixed, frames, member))
+    do i = 1, size(mesh%node_set)
+      associate (node => mesh%node_set(i)%item)
+        do d = 1, mesh%n_dim
+          trial = fixed
+          trial(d, node) = .true.
+          worth = 2*(rank_of(held_modes(mesh, trial, frames, member)) - n_before)
+          if (worth == 0) cycle
+          if (is_flat(mesh%x(d, node))) worth = worth + 1
+          if (worth <= best) cycle
+          best = worth
+          set = i
+          direction = d
+        end do
+      end associate
+    end do
+  end subroutine best_support
+
+  !> Whether coordinates are all the same.
+  pure logical function is_flat(x) result(flat)
+    real(dp), intent(in) :: x(:) !! of nodes [length]
+
+    flat = maxval(x) - minval(x) <= 1.0e-9_dp*maxval(abs(x))
+  end function is_flat
+
+  !> Finds a part of a body that hangs by nodes which do not hold it: parts are elements with points
+  !! that hang together by faces. The rest of the body is taken to stand still.
+  pure subroutine find_hinge(modes, element, node, mesh, points, constraint, frames)
+    character(:), allocatable, intent(out) :: modes  !! "rotation about z", empty without a hinge
+    integer, intent(out) :: element                  !! an element of that part, 0 without a hinge
+    integer, intent(out) :: node                     !! a node by which it hangs, 0 without a hinge
+    type(mesh_t), intent(in) :: mesh                 !! where it is, with neighbours
+    type(points_t), intent(in) :: points             !! in this mesh
+    type(constraint_t), intent(in) :: constraint(:)  !! in force in the step
+    type(nodal_frames_t), intent(in) :: frames       !! axes of the nodes
+    integer, allocatable :: part(:), part_of_node(:)
+    logical, allocatable :: fixed(:, :), shared(:), member(:)
+    integer :: e, i
+
+    modes = ""
+    element = 0
+    node = 0
+    call label_parts(part, mesh, points)
+    allocate (part_of_node(mesh%n_node), source=0)
+    allocate (shared(mesh%n_node), member(mesh%n_node), source=.false.)
+    do e = 1, mesh%n_el
+      if (part(e) == 0) cycle
+      associate (corner => mesh%node(:, e))
+        shared(corner) = shared(corner) .or. (part_of_node(corner) > 0 .and. &
+                                              part_of_node(corner) /= part(e))
+        part_of_node(corner) = part(e)
+      end associate
+    end do
+    fixed = held_directions(mesh, constraint) .or. spread(shared, 1, mesh%n_dim)
+    do i = 1, maxval([0, part])
+      member = .false.
+      do e = 1, mesh%n_el
+        if (part(e) == i) member(mesh%node(:, e)) = .true.
+      end do
+      if (.not. any(member .and. shared)) cycle
+      modes = free_modes(mesh, fixed, frames, member)
+      if (len(modes) == 0) cycle
+      element = findloc(part, i, dim=1)
+      node = findloc(member .and. shared, .true., dim=1)
+      return
+    end do
+  end subroutine find_hinge
+
+  !> Numbers the parts of elements with points that hang together by faces.
+  pure subroutine label_parts(part, mesh, points)
+    integer, allocatable, intent(out) :: part(:) !! (n_el) 0 without points
+    type(mesh_t), intent(in) :: mesh             !! with neighbours
+    type(points_t), intent(in) :: points         !! in this mesh
+    integer :: queue(mesh%n_el)
+    integer :: e, i, k, n, next, n_parts
+
+    allocate (part(mesh%n_el), source=0)
+    n_parts = 0
+    do e = 1, mesh%n_el
+      if (part(e) > 0 .or. points%first(e + 1) == points%first(e)) cycle
+      n_parts = n_parts + 1
+      part(e) = n_parts
+      queue(1) = e
+      n = 1
+      i = 0
+      do while (i < n)
+        i = i + 1
+        do k = 1, mesh%n_dim + 1
+          next = mesh%neighbour(k, queue(i))
+          if (next == 0) cycle
+          if (part(next) > 0 .or. points%first(next + 1) == points%first(next)) cycle
+          part(next) = n_parts
+          n = n + 1
+          queue(n) = next
+        end do
+      end do
+    end do
+  end subroutine label_parts
 
   !> The body of each node, called by its lowest node; 0 for nodes without material.
   pure subroutine label_bodies(body, mesh, points)

@@ -6,17 +6,19 @@ module mpm_linear_solver
   use mpm_kinds, only: dp, ip
   use mpm_openblas_binding, only: openblas_set_num_threads
   use mpm_umfpack_binding, only: control_ordering, control_refinements, control_strategy, &
-    info_rcond, ordering_cholmod, status_ok, status_out_of_memory, strategy_symmetric, system_a, &
-    umfpack_control, umfpack_dl_defaults, umfpack_dl_free_numeric, umfpack_dl_free_symbolic, &
-    umfpack_dl_numeric, umfpack_dl_solve, umfpack_dl_symbolic, umfpack_info
+    info_peak_estimate, info_rcond, info_unit, ordering_cholmod, status_ok, &
+    status_out_of_memory, strategy_symmetric, system_a, umfpack_control, umfpack_dl_defaults, &
+    umfpack_dl_free_numeric, umfpack_dl_free_symbolic, umfpack_dl_numeric, umfpack_dl_solve, &
+    umfpack_dl_symbolic, umfpack_info
   implicit none
   private
   public :: linear_solver_t, analyse, factorize, solve, free_solver
-  public :: solver_ok, solver_singular, solver_memory
+  public :: solver_ok, solver_singular, solver_memory, solver_not_finite
 
   integer, parameter :: solver_ok = 0       !! done
   integer, parameter :: solver_singular = 1 !! matrix singular to machine precision, or not finite
   integer, parameter :: solver_memory = 2   !! out of memory
+  integer, parameter :: solver_not_finite = 3 !! the solution holds infinity or no numbers
 
   real(dp), parameter :: smallest_rcond = 1.0e-16_dp !! pivot ratio below which no digit is left
 
@@ -27,6 +29,8 @@ module mpm_linear_solver
     type(c_ptr) :: numeric = c_null_ptr                    !! factors
     real(dp)    :: control(0:umfpack_control - 1) = 0.0_dp !! controls of UMFPACK
     real(dp)    :: info(0:umfpack_info - 1) = 0.0_dp       !! statistics of UMFPACK's last call
+    real(dp)    :: memory = 0.0_dp      !! estimate for a factorisation by the last analysis, 0 if
+                                        !! unknown [bytes]
     real(dp)    :: rcond = 1.0_dp       !! smallest over largest pivot, last factorisation [-]
     integer     :: n_analyses = 0       !! analyses so far
     integer     :: n_factorizations = 0 !! factorisations so far
@@ -44,6 +48,7 @@ contains
 
     call free_solver(solver)
     outcome = solver_ok
+    solver%memory = 0.0_dp
     if (matrix%n == 0) return
     ! More BLAS threads would make sums depend on their number and fight with OpenMP.
     call openblas_set_num_threads(1_c_int)
@@ -56,6 +61,8 @@ contains
                                  solver%info)
     solver%n_analyses = solver%n_analyses + 1
     outcome = outcome_of(status)
+    if (outcome == solver_ok) solver%memory = solver%info(info_peak_estimate) &
+                                              *solver%info(info_unit)
   end subroutine analyse
 
   !> Factorises a matrix whose pattern has been analysed.
@@ -94,6 +101,7 @@ contains
     status = umfpack_dl_solve(system_a, matrix%col_ptr, matrix%row, matrix%val, x, rhs, &
                               solver%numeric, solver%control, solver%info)
     outcome = outcome_of(status)
+    if (outcome == solver_ok .and. .not. all(ieee_is_finite(x))) outcome = solver_not_finite
   end subroutine solve
 
   !> Releases the handles; harmless when there are none. Counts stay.

@@ -8,7 +8,7 @@ module mpm_umfpack_binding
   public :: umfpack_dl_free_symbolic, umfpack_dl_free_numeric
   public :: umfpack_control, umfpack_info
   public :: control_strategy, control_ordering, control_refinements
-  public :: strategy_symmetric, ordering_cholmod, info_rcond
+  public :: strategy_symmetric, ordering_cholmod, info_peak_estimate, info_rcond, info_unit
   public :: status_ok, status_singular, status_out_of_memory, system_a
 
   ! Zero-based positions, as in umfpack.h.
@@ -17,6 +17,8 @@ module mpm_umfpack_binding
   integer, parameter :: control_strategy = 5     !! position of UMFPACK_STRATEGY
   integer, parameter :: control_refinements = 7  !! position of UMFPACK_IRSTEP
   integer, parameter :: control_ordering = 10    !! position of UMFPACK_ORDERING
+  integer, parameter :: info_unit = 3            !! position of UMFPACK_SIZE_OF_UNIT
+  integer, parameter :: info_peak_estimate = 21  !! position of UMFPACK_PEAK_MEMORY_ESTIMATE
   integer, parameter :: info_rcond = 67          !! position of UMFPACK_RCOND
 
   integer, parameter :: strategy_symmetric = 3   !! UMFPACK_STRATEGY_SYMMETRIC

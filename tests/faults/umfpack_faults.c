@@ -1,0 +1,61 @@
+/* Faults of UMFPACK on demand, for LD_PRELOAD: the calls of one function from number FAULT_FIRST on,
+   FAULT_COUNT of them, go wrong. FAULT_CALL=symbolic or numeric: out of memory; solve: the first
+   number of the solution becomes NaN, after the solution. */
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define OUT_OF_MEMORY (-1L)
+
+typedef long (*symbolic_t)(long, long, const long *, const long *, const double *, void **,
+                           const double *, double *);
+typedef long (*numeric_t)(const long *, const long *, const double *, void *, void **,
+                          const double *, double *);
+typedef long (*solve_t)(long, const long *, const long *, const double *, double *, const double *,
+                        void *, const double *, double *);
+
+static int is_due(const char *call)
+{
+    static long n_calls = 0;
+    const char *wanted = getenv("FAULT_CALL"), *first = getenv("FAULT_FIRST"),
+               *count = getenv("FAULT_COUNT");
+    if (wanted == NULL || first == NULL || count == NULL || strcmp(wanted, call) != 0)
+        return 0;
+    n_calls++;
+    return n_calls >= atol(first) && n_calls < atol(first) + atol(count);
+}
+
+long umfpack_dl_symbolic(long n_row, long n_col, const long *col_ptr, const long *row,
+                         const double *val, void **symbolic, const double *control, double *info)
+{
+    symbolic_t original = (symbolic_t)dlsym(RTLD_NEXT, "umfpack_dl_symbolic");
+    if (is_due("symbolic")) {
+        *symbolic = NULL;
+        return OUT_OF_MEMORY;
+    }
+    return original(n_row, n_col, col_ptr, row, val, symbolic, control, info);
+}
+
+long umfpack_dl_numeric(const long *col_ptr, const long *row, const double *val, void *symbolic,
+                        void **numeric, const double *control, double *info)
+{
+    numeric_t original = (numeric_t)dlsym(RTLD_NEXT, "umfpack_dl_numeric");
+    if (is_due("numeric")) {
+        *numeric = NULL;
+        return OUT_OF_MEMORY;
+    }
+    return original(col_ptr, row, val, symbolic, numeric, control, info);
+}
+
+long umfpack_dl_solve(long system, const long *col_ptr, const long *row, const double *val,
+                      double *x, const double *rhs, void *numeric, const double *control,
+                      double *info)
+{
+    solve_t original = (solve_t)dlsym(RTLD_NEXT, "umfpack_dl_solve");
+    long status = original(system, col_ptr, row, val, x, rhs, numeric, control, info);
+    if (is_due("solve"))
+        x[0] = NAN;
+    return status;
+}
