@@ -1606,6 +1606,7 @@ job.inp:15:1: error: the initial stress of material point 1 in element 1 needs a
         3,
         text("""
 error: material point 6 moved by 8.79335e-5 in the *GEOSTATIC step 'PUSH': expected at most UTOL=1e-6, which needs an initial stress in equilibrium with the loads
+  last attempt: job_fail.vtkhdf
 """),
         arguments=("-q",),
     ),
@@ -2108,7 +2109,7 @@ job.inp:18:25: error: element 3 already holds material points: expected regions 
         [("X0, 1, 1\n", "")],
         3,
         text("""
-job.inp:16:1: error: the body of element 1 is free to move in this step (translation in x): expected *BOUNDARY conditions that hold it
+job.inp:16:1: error: the body of element 1 is free to move in this step (translation in x): expected *BOUNDARY conditions that hold it, such as X0, 1, 1
    16 | *STEP, NAME=PUSH, INC=20
       | ^~~~~
 """),
@@ -2119,7 +2120,7 @@ job.inp:16:1: error: the body of element 1 is free to move in this step (transla
         [("Y0, 2, 2\n", ""), ("Y1, 2, 2, -0.001", "X1, 1, 1, 0.001")],
         3,
         text("""
-job.inp:16:1: error: the body of element 1 is free to move in this step (translation in y): expected *BOUNDARY conditions that hold it
+job.inp:16:1: error: the body of element 1 is free to move in this step (translation in y): expected *BOUNDARY conditions that hold it, such as Y0, 2, 2
    16 | *STEP, NAME=PUSH, INC=20
       | ^~~~~
 """),
@@ -2130,7 +2131,7 @@ job.inp:16:1: error: the body of element 1 is free to move in this step (transla
         [("X0, 1, 1\nY0, 2, 2\nY1, 2, 2, -0.001\n", "1, 1, 2\n")],
         3,
         text("""
-job.inp:16:1: error: the body of element 1 is free to move in this step (rotation about z): expected *BOUNDARY conditions that hold it
+job.inp:16:1: error: the body of element 1 is free to move in this step (rotation about z): expected *BOUNDARY conditions that hold it, such as X0, 1, 1
    16 | *STEP, NAME=PUSH, INC=20
       | ^~~~~
 """),
@@ -2141,7 +2142,7 @@ job.inp:16:1: error: the body of element 1 is free to move in this step (rotatio
         [("*BOUNDARY\nX0, 1, 1\nY0, 2, 2\nY1, 2, 2, -0.001\n", "")],
         3,
         text("""
-job.inp:16:1: error: the body of element 1 is free to move in this step (translation in x, translation in y, rotation about z): expected *BOUNDARY conditions that hold it
+job.inp:16:1: error: the body of element 1 is free to move in this step (translation in x, translation in y, rotation about z): expected *BOUNDARY conditions that hold it, such as X0, 1, 1 and Y0, 2, 2
    16 | *STEP, NAME=PUSH, INC=20
       | ^~~~~
 """),
@@ -2152,7 +2153,7 @@ job.inp:16:1: error: the body of element 1 is free to move in this step (transla
         [("X0, 1, 1\n", "")],
         3,
         text("""
-job.inp:10:1: error: the body of element 1 is free to move in this step (translation in x): expected *BOUNDARY conditions that hold it
+job.inp:10:1: error: the body of element 1 is free to move in this step (translation in x): expected *BOUNDARY conditions that hold it, such as X0, 1, 1
    10 | *STEP
       | ^~~~~
 """),
@@ -2163,7 +2164,7 @@ job.inp:10:1: error: the body of element 1 is free to move in this step (transla
         [("Y0, 2, 2\n", "")],
         3,
         text("""
-job.inp:10:1: error: the body of element 1 is free to move in this step (translation in y): expected *BOUNDARY conditions that hold it
+job.inp:10:1: error: the body of element 1 is free to move in this step (translation in y): expected *BOUNDARY conditions that hold it, such as Y0, 2, 2
    10 | *STEP
       | ^~~~~
 """),
@@ -2174,7 +2175,7 @@ job.inp:10:1: error: the body of element 1 is free to move in this step (transla
         [("Z0, 3, 3\n", "")],
         3,
         text("""
-job.inp:10:1: error: the body of element 1 is free to move in this step (translation in z): expected *BOUNDARY conditions that hold it
+job.inp:10:1: error: the body of element 1 is free to move in this step (translation in z): expected *BOUNDARY conditions that hold it, such as Z0, 3, 3
    10 | *STEP
       | ^~~~~
 """),
@@ -2185,7 +2186,7 @@ job.inp:10:1: error: the body of element 1 is free to move in this step (transla
         [("X0, 1, 1\nY0, 2, 2\nZ0, 3, 3", "1, 1, 3\n2, 2, 3")],
         3,
         text("""
-job.inp:10:1: error: the body of element 1 is free to move in this step (rotation about x): expected *BOUNDARY conditions that hold it
+job.inp:10:1: error: the body of element 1 is free to move in this step (rotation about x): expected *BOUNDARY conditions that hold it, such as Y0, 2, 2
    10 | *STEP
       | ^~~~~
 """),
@@ -2196,7 +2197,7 @@ job.inp:10:1: error: the body of element 1 is free to move in this step (rotatio
         [("X0, 1, 1\nY0, 2, 2\nZ0, 3, 3", "1, 1, 3\n5, 1, 2")],
         3,
         text("""
-job.inp:10:1: error: the body of element 1 is free to move in this step (rotation about z): expected *BOUNDARY conditions that hold it
+job.inp:10:1: error: the body of element 1 is free to move in this step (rotation about z): expected *BOUNDARY conditions that hold it, such as X0, 1, 1
    10 | *STEP
       | ^~~~~
 """),
@@ -2207,7 +2208,7 @@ job.inp:10:1: error: the body of element 1 is free to move in this step (rotatio
         [("X0, 1, 1\nY0, 2, 2\nZ0, 3, 3", "1, 1, 3\n3, 1, 1\n3, 3, 3")],
         3,
         text("""
-job.inp:10:1: error: the body of element 1 is free to move in this step (rotation about y): expected *BOUNDARY conditions that hold it
+job.inp:10:1: error: the body of element 1 is free to move in this step (rotation about y): expected *BOUNDARY conditions that hold it, such as X0, 1, 1
    10 | *STEP
       | ^~~~~
 """),
@@ -2221,7 +2222,7 @@ job.inp:10:1: error: the body of element 1 is free to move in this step (rotatio
         ],
         3,
         text("""
-job.inp:20:1: error: the body of element 7 is free to move in this step (translation in x, translation in y, rotation about z): expected *BOUNDARY conditions that hold it
+job.inp:20:1: error: the body of element 7 is free to move in this step (translation in x, translation in y, rotation about z): expected *BOUNDARY conditions that hold it, such as NODES, 1, 1 and NODES, 2, 2
    20 | *STEP
       | ^~~~~
 """),
@@ -3028,7 +3029,7 @@ job.inp:12:22: error: node 8 of the driver has other axes than the rest: expecte
         ],
         3,
         text("""
-job.inp:20:1: error: the body of element 1 is free to move in this step (translation in x): expected *BOUNDARY conditions that hold it
+job.inp:20:1: error: the body of element 1 is free to move in this step (translation in x): expected *BOUNDARY conditions that hold it, such as X0, 1, 1
    20 | *STEP, NAME=PUSH, INC=20
       | ^~~~~
 """),
@@ -3044,7 +3045,10 @@ job.inp:20:1: error: the body of element 1 is free to move in this step (transla
         ],
         4,
         text("""
-error: no convergence at the smallest increment 1: too many iterations, largest residual at node 6 (step 'PUSH', increment 1, attempt 1, step time 0)
+error: no convergence at the smallest increment 1: too many iterations (step 'PUSH', increment 1, attempt 1, step time 0)
+  worst place: node 6 at (1, 0.5), element 4 at (0.833333, 0.333333), material point 4 at (0.833333, 0.333333)
+  likely cause: MAX ITERATIONS=1 of *CONTROLS are too few: the residual was 0.382973, allowed is 1e-9
+  last attempt: job_fail.vtkhdf
 """),
         arguments=("-q",),
     ),
@@ -3058,6 +3062,8 @@ error: no convergence at the smallest increment 1: too many iterations, largest 
         6,
         text("""
 error: 8 material points left the mesh, the first is point 1 at (5.33333, 0.166667): expected a mesh that reaches further, or *LOST POINTS, ACTION=FREEZE or REMOVE (step 'PUSH', increment 1, step time 1)
+  worst place: node 5 at (0.5, 0.5), element 1 at (0.333333, 0.166667), material point 1 at (5.33333, 0.166667)
+  last attempt: job_fail.vtkhdf
 """),
         arguments=("-q",),
     ),

@@ -11,6 +11,7 @@ from conftest import ROOT
 
 PLACE = re.compile(r"^[^\s:][^:]*:\d+:\d+: (error|warning): ")
 WITHOUT_PLACE = re.compile(r"^(tessera: |[^\s:][^:]*: )?error: ")
+DETAIL = re.compile(r"^  (worst place|likely cause|last attempt): ")
 EXCERPT = re.compile(r"^( {0,4}\d+|     ) \| ")
 
 
@@ -22,6 +23,8 @@ def assert_clean(stderr):
     for line in stderr.splitlines():
         if EXCERPT.match(line):
             assert PLACE.match(previous) or EXCERPT.match(previous), stderr
+        elif DETAIL.match(line):
+            assert WITHOUT_PLACE.match(previous) or DETAIL.match(previous), stderr
         elif not line.startswith(("tessera --help", "EXPECT ")):
             assert PLACE.match(line) or WITHOUT_PLACE.match(line), stderr
         previous = line

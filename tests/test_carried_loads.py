@@ -104,7 +104,7 @@ def test_force_is_exact_in_cut_elements(run_tessera):
 def test_load_of_the_mesh_stays_behind(run_tessera):
     run = run_tessera(deck(carrier="MESH"), "-q")
     assert run.code == 3
-    assert run.stderr.rstrip("\n") == (
+    assert run.stderr.splitlines()[0] == (
         "error: node 19 carries a load but belongs to no element that holds material points: "
         "expected loads on the body only (step 'TRAVEL', increment 2, attempt 1, step time 2)"
     )
@@ -165,7 +165,7 @@ ROOF, P, 1.0
 def test_load_that_loses_the_body_is_an_error(run_tessera):
     run = run_tessera(STRETCH, "-q")
     assert run.code == 6
-    assert run.stderr.rstrip("\n") == (
+    assert run.stderr.splitlines()[0] == (
         "error: the loaded surface 'ROOF' lost the body at (0.788675, 6): expected an element with "
         "material points nearer than its own size (step 'STEP-1', increment 2, attempt 1, "
         "step time 0.5)"
