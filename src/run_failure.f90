@@ -44,15 +44,17 @@ contains
     end if
   end subroutine shorten
 
-  !> Calls a tangent singular that has a free mode, and pivots of rounding errors to show for it:
-  !! whatever Newton's method found then has no meaning.
-  pure subroutine refuse_mechanism(report, body, schedule, model)
+  !> Calls a tangent singular that has a free mode, pivots of rounding errors, and a displacement
+  !! beyond the mesh to show for it: such a solution has no meaning, whatever its residual.
+  pure subroutine refuse_mechanism(report, body, u, schedule, model)
     type(newton_report_t), intent(inout) :: report   !! its outcome may change
     type(body_t), intent(in)     :: body             !! converged
+    real(dp), intent(in)         :: u(:, :)          !! (n_dim, n_node)  of the attempt [length]
     type(schedule_t), intent(in) :: schedule
     type(model_t), intent(in)    :: model
 
-    if (report%outcome == outcome_memory .or. report%rcond > doubtful_rcond) return
+    if (report%outcome /= outcome_converged .or. report%rcond > doubtful_rcond) return
+    if (maxval(abs(u)) <= maxval(maxval(body%mesh%x, dim=2) - minval(body%mesh%x, dim=2))) return
     if (len(free_modes_text(body, model, schedule%step)) > 0) report%outcome = outcome_singular
   end subroutine refuse_mechanism
 

@@ -156,7 +156,7 @@ contains
           return
         end if
         call find_equilibrium(system, report, body, model%step(schedule%step)%newton)
-        call refuse_mechanism(report, body, schedule, model)
+        call refuse_mechanism(report, body, system%u, schedule, model)
         call note_attempt(state, schedule, report, system, body)
         if (report%outcome == outcome_converged) call note_equilibrium(state, system, body, model)
         call write_attempt(output, state, report, error)
