@@ -86,6 +86,7 @@ contains
     integer :: n_points(body%mesh%n_el), worst_node(body%mesh%n_node), worst(body%mesh%n_el)
     real(dp) :: det_f(body%mesh%n_el)
 
+    if (allocated(error)) return
     n_points = body%points%first(2:) - body%points%first(:body%mesh%n_el)
     det_f = merge(1.0_dp + system%kinematics%delta_j_m1, 1.0_dp, n_points > 0)
     worst_node = 0
