@@ -9,6 +9,7 @@ module mpm_run_failure
   use mpm_failure_text, only: causes_text, count_cause, free_modes_text, place_of_failure
   use mpm_increments, only: cut_back, schedule_t
   use mpm_kinds, only: dp
+  use mpm_memory, only: megabytes
   use mpm_model, only: model_t
   use mpm_place_text, only: place_text
   use mpm_point_location, only: location_report_t
@@ -81,7 +82,7 @@ contains
 
     wanted = ""
     if (system%solver%memory > 0.0_dp) wanted = ", about "//real_text( &
-      max(1.0_dp, anint(system%solver%memory/1.0e6_dp)))//" MB are needed"
+      megabytes(system%solver%memory))//" MB are needed"
     call make_error(error, exit_solver, "error: not enough memory for the "//stage//" of "// &
                     integer_text(system%dofs%n)//" equations with "// &
                     real_text(real(system%tangent%nnz, dp))//" entries"//wanted// &

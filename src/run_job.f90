@@ -23,6 +23,7 @@ module mpm_run_job
   use mpm_result_paths, only: are_there_results, existing_results, make_folder, result_paths, &
                               result_paths_t
   use mpm_run_log, only: log_message
+  use mpm_run_memory, only: check_memory
   use mpm_run_output, only: close_output, open_output, run_output_t
   use mpm_run_state, only: make_run_info, run_info_t, run_state_t
   use mpm_solve_job, only: make_body, prepare_increment, solve_job
@@ -51,6 +52,7 @@ contains
 
     exit_code = exit_ok
     call read_model(model, deck, warnings, options, error)
+    if (.not. allocated(error)) call check_memory(model, error)
     if (allocated(error)) return
     formulation = formulations(options, model)
     call make_run_info(info, deck%file(1)%path, deck%source, options%threads, options%quiet)

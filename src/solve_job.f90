@@ -280,6 +280,10 @@ contains
     if (pattern_is_current(system%map, system%active, system%dofs, system%ghost%node)) return
     call build_pattern(system%tangent, system%map, body%patches, body%mesh, system%dofs, &
                        system%active, system%ghost%node)
+    if (.not. allocated(system%map%position)) then
+      call memory_error(error, system, "pattern")
+      return
+    end if
     call analyse(system%solver, system%tangent, outcome)
     if (outcome == solver_memory) then
       call memory_error(error, system, "analysis")

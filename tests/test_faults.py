@@ -336,10 +336,10 @@ def test_lost_points_are_counted(run_tessera, action, n_kept):
 
 
 @pytest.fixture(scope="session")
-def faulty_umfpack(tmp_path_factory):
-    """A library that makes calls of UMFPACK fail."""
-    library = tmp_path_factory.mktemp("faults") / "umfpack_faults.so"
-    source = ROOT / "tests" / "faults" / "umfpack_faults.c"
+def faulty_libraries(tmp_path_factory):
+    """A library that makes calls of UMFPACK and of malloc fail."""
+    library = tmp_path_factory.mktemp("faults") / "library_faults.so"
+    source = ROOT / "tests" / "faults" / "library_faults.c"
     compiler = shutil.which("cc") or shutil.which("gcc")
     assert compiler, "no C compiler: the build needs one too"
     subprocess.run([compiler, "-shared", "-fPIC", "-o", library, source], check=True)
@@ -347,11 +347,11 @@ def faulty_umfpack(tmp_path_factory):
 
 
 @pytest.fixture
-def run_with_faults(faulty_umfpack, run_tessera, monkeypatch):
+def run_with_faults(faulty_libraries, run_tessera, monkeypatch):
     """run_with_faults(deck, call, first, count): these calls of UMFPACK fail."""
 
     def run(deck, call, first, count):
-        monkeypatch.setenv("LD_PRELOAD", os.fspath(faulty_umfpack))
+        monkeypatch.setenv("LD_PRELOAD", os.fspath(faulty_libraries))
         monkeypatch.setenv("FAULT_CALL", call)
         monkeypatch.setenv("FAULT_FIRST", str(first))
         monkeypatch.setenv("FAULT_COUNT", str(count))
@@ -400,6 +400,68 @@ def test_library_alone_changes_nothing(run_with_faults):
     run = run_with_faults(square(plastic=True), "none", 1, 1)
     assert (run.code, run.stderr) == (0, "")
     assert len(attempts(run)) == 1
+
+
+# A square of 800 elements in one patch: its block of the tangent is large.
+ONE_PATCH = """\
+*GENERATE, TYPE=BOX, DIMENSION=2
+X, 0, 2, 20
+Y, 0, 2, 20
+*FORMULATION, TYPE=FBAR PATCH
+*PATCH, SOURCE=METIS, SIZE=800
+*MATERIAL, NAME=CLAY
+*ELASTIC
+100, 0.3
+*MATERIAL POINTS, ELSET=ALL, MATERIAL=CLAY, PER ELEMENT={points}
+*STEP, NAME=PUSH
+*STATIC
+1, 1
+*BOUNDARY
+X0, 1, 1
+Y0, 2, 2
+Y1, 2, 2, -0.01
+*END STEP
+"""
+
+
+@pytest.fixture
+def run_with_limit(faulty_libraries, run_tessera, monkeypatch):
+    """run_with_limit(deck, limit): no block of memory of `limit` bytes or more is to be had."""
+
+    def run(deck, limit):
+        monkeypatch.setenv("LD_PRELOAD", os.fspath(faulty_libraries))
+        monkeypatch.setenv("FAULT_MALLOC", str(limit))
+        return run_tessera(deck, "-q", "-f")
+
+    return run
+
+
+@pytest.mark.parametrize("limit", [5_000_000, 6_000_000])  # of 5.4 MB and 6.2 MB
+def test_no_memory_for_the_pattern(run_with_limit, limit):
+    run = run_with_limit(ONE_PATCH.format(points=1), limit)
+    start = (
+        "error: not enough memory for the pattern of 819 equations with 670761 entries: expected"
+    )
+    check_failure(run, 5, start)
+    assert attempts(run) == []
+
+
+def test_no_memory_for_the_points(run_with_limit):
+    run = run_with_limit(ONE_PATCH.format(points=16), 12_000_000)
+    assert run.code == 5
+    assert run.stderr.startswith(
+        "job.inp:9:25: error: not enough memory for 12800 material points, about 13 MB are needed:"
+        " expected fewer points per element"
+    )
+
+
+def test_no_memory_for_the_run(run_with_limit):
+    run = run_with_limit(ONE_PATCH.format(points=16), 13_000_000)
+    assert run.code == 5
+    assert run.stderr == (
+        "error: not enough memory for a run with 12800 material points and 800 elements, about 13"
+        " MB more are needed: expected a coarser mesh or fewer points per element\n"
+    )
 
 
 # --- the file ----------------------------------------------------------------------------------

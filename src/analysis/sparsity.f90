@@ -53,7 +53,7 @@ module mpm_sparsity
 
 contains
 
-  !> Builds the pattern of the tangent with zero values, the assembly map and the colours.
+  !> Builds pattern, zero values, map and colours. Too little memory: map%position is unallocated.
   pure subroutine build_pattern(matrix, map, patches, mesh, dofs, active_element, pair_node)
     type(csc_matrix_t), intent(out)   :: matrix  !! pattern, values zero
     type(assembly_map_t), intent(out) :: map     !! from blocks into the matrix
@@ -74,7 +74,9 @@ contains
     call invert_lists(blocks_of_node, lists_t(map%node_first, map%node), mesh%n_node)
     call link_nodes(neighbours, map, blocks_of_node)
     call fill_columns(matrix, neighbours, dofs)
+    if (.not. allocated(matrix%val)) return
     call place_blocks(map, matrix, neighbours, blocks_of_node, dofs)
+    if (.not. allocated(map%position)) return
     call color_blocks(map%color_first, map%color_patch, map, blocks_of_node, [1, map%n_patch])
     map%n_color = size(map%color_first) - 1
     call color_blocks(map%pair_color_first, map%color_pair, map, blocks_of_node, &
@@ -238,11 +240,11 @@ contains
   !> Writes the columns: below each other the equations of the neighbours, which ascend because
   !! equations are numbered node by node.
   pure subroutine fill_columns(matrix, neighbours, dofs)
-    type(csc_matrix_t), intent(out) :: matrix !! pattern, values zero
+    type(csc_matrix_t), intent(out) :: matrix !! pattern, values zero; val unallocated: no memory
     type(lists_t), intent(in) :: neighbours   !! neighbours of each node
     type(dof_map_t), intent(in) :: dofs       !! equation numbers
     integer, allocatable :: n_free(:)
-    integer :: b, i, j, k, column
+    integer :: b, i, j, k, column, status
     integer(ip) :: n
 
     n_free = count(dofs%id > 0, dim=1)
@@ -256,8 +258,9 @@ contains
       end do
     end do
     matrix%nnz = matrix%col_ptr(dofs%n)
-    allocate (matrix%row(0:matrix%nnz - 1_ip))
-    allocate (matrix%val(0:matrix%nnz - 1_ip), source=0.0_dp)
+    allocate (matrix%row(0:matrix%nnz - 1_ip), stat=status)
+    if (status == 0) allocate (matrix%val(0:matrix%nnz - 1_ip), source=0.0_dp, stat=status)
+    if (status /= 0) return
     n = 0_ip
     do b = 1, size(n_free)
       do j = 1, n_free(b)
@@ -274,15 +277,16 @@ contains
 
   !> Finds the place in `val` of every entry of every block, node column by node column.
   pure subroutine place_blocks(map, matrix, neighbours, blocks_of_node, dofs)
-    type(assembly_map_t), intent(inout) :: map   !! position is set
+    type(assembly_map_t), intent(inout) :: map   !! position is set, unallocated: no memory
     type(csc_matrix_t), intent(in) :: matrix     !! pattern
     type(lists_t), intent(in) :: neighbours      !! neighbours of each node
     type(lists_t), intent(in) :: blocks_of_node !! blocks of each node
     type(dof_map_t), intent(in) :: dofs          !! equation numbers
     integer, allocatable :: offset(:, :)
-    integer :: b, k, block
+    integer :: b, k, block, status
 
-    allocate (map%position(map%position_first(map%n_block + 1) - 1_ip))
+    allocate (map%position(map%position_first(map%n_block + 1) - 1_ip), stat=status)
+    if (status /= 0) return
     allocate (offset(size(dofs%id, 1), size(dofs%id, 2)), source=-1)
     do b = 1, size(dofs%id, 2)
       call number_rows(offset, neighbours%item(neighbours%first(b):neighbours%first(b + 1) - 1), &

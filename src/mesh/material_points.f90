@@ -1,14 +1,16 @@
 !> Material points: position, host element, history and stress, as structure of arrays.
 module mpm_material_points
-  use mpm_error, only: error_t, exit_model, make_error
-  use mpm_kinds, only: dp
+  use mpm_error, only: error_t, exit_model, exit_solver, make_error
+  use mpm_kinds, only: dp, ip
+  use mpm_memory, only: has_room, megabytes
   use mpm_mesh, only: mesh_t
   use mpm_point_rules, only: available_rules, point_rule
-  use mpm_text, only: integer_text
+  use mpm_text, only: integer_text, real_text
   implicit none
   private
   public :: points_t, point_state_t, n_hardening
-  public :: allocate_points, allocate_state, copy_state, generate_points, group_points
+  public :: allocate_points, allocate_state, bytes_of_points, copy_state, generate_points
+  public :: group_points
   public :: centre_of_mass, nearest_point, total_mass, total_volume
   public :: status_inside, status_extrapolated, status_frozen, status_removed
 
@@ -50,8 +52,9 @@ module mpm_material_points
 contains
 
   !> Fills elements with points by a rule and appends them to the points there are.
-  !! An element that already holds points, or stands twice in the list, is a model error.
-  pure subroutine generate_points(points, mesh, elements, material, n_per_element, density, error)
+  !! An element that already holds points, or stands twice in the list, is a model error; too
+  !! little memory for the points has the code exit_solver.
+  subroutine generate_points(points, mesh, elements, material, n_per_element, density, error)
     type(points_t), intent(inout) :: points          !! points, out the new ones appended
     type(mesh_t), intent(in) :: mesh                 !! mesh with gradients and volumes
     integer, intent(in)      :: elements(:)          !! (m)  linear elements to fill
@@ -73,6 +76,8 @@ contains
     call check_empty(points, mesh, elements, error)
     if (allocated(error)) return
     n_old = points%n
+    call check_memory(n_old + n_per_element*size(elements), mesh%n_dim, error)
+    if (allocated(error)) return
     call append_blank_points(points, mesh%n_dim, n_per_element*size(elements))
     do i = 1, size(elements)
       do k = 1, n_per_element
@@ -88,6 +93,28 @@ contains
     points%mass(n_old + 1:) = density*points%volume_0(n_old + 1:)
     call group_points(points, mesh%n_el)
   end subroutine generate_points
+
+  !> There is memory for so many points, three times while they are put together.
+  subroutine check_memory(n, n_dim, error)
+    integer, intent(in) :: n                         !! points
+    integer, intent(in) :: n_dim                     !! 2 or 3
+    type(error_t), allocatable, intent(out) :: error !! exit_solver
+
+    if (has_room(3_ip*bytes_of_points(n, n_dim))) return
+    call make_error(error, exit_solver, "not enough memory for "//integer_text(n)// &
+      " material points, about "//real_text(megabytes(3.0_dp*real(bytes_of_points(n, n_dim), dp)))// &
+      " MB are needed: expected fewer points per element, or fewer elements with points")
+  end subroutine check_memory
+
+  !> Memory of points and their state.
+  pure integer(ip) function bytes_of_points(n, n_dim) result(n_bytes)
+    integer, intent(in) :: n     !! points
+    integer, intent(in) :: n_dim !! 2 or 3
+    integer, parameter :: reals_of_state = 3*6 + n_hardening + 1
+
+    n_bytes = int(n, ip)*(5*storage_size(n)/8 + (reals_of_state + 3*n_dim + 1 + 3 + 9) &
+                          *(storage_size(1.0_dp)/8))
+  end function bytes_of_points
 
   !> None of the elements holds a point, and none stands twice in the list.
   pure subroutine check_empty(points, mesh, elements, error)

@@ -1,6 +1,7 @@
-/* Faults of UMFPACK on demand, for LD_PRELOAD: the calls of one function from number FAULT_FIRST on,
-   FAULT_COUNT of them, go wrong. FAULT_CALL=symbolic or numeric: out of memory; solve: the first
-   number of the solution becomes NaN, after the solution. */
+/* Faults of libraries on demand, for LD_PRELOAD.
+   UMFPACK: the calls of one function from number FAULT_FIRST on, FAULT_COUNT of them, go wrong.
+   FAULT_CALL=symbolic or numeric: out of memory; solve: the first number of the solution is NaN.
+   Memory: see malloc at the end. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <math.h>
@@ -58,4 +59,16 @@ long umfpack_dl_solve(long system, const long *col_ptr, const long *row, const d
     if (is_due("solve"))
         x[0] = NAN;
     return status;
+}
+
+/* Of the C library: what malloc does when nobody stands before it. */
+extern void *__libc_malloc(size_t size);
+
+/* FAULT_MALLOC: there are no blocks of this size and more. */
+void *malloc(size_t size)
+{
+    const char *limit = getenv("FAULT_MALLOC");
+    if (limit != NULL && size >= strtoul(limit, NULL, 10))
+        return NULL;
+    return __libc_malloc(size);
 }
