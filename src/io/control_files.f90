@@ -1,6 +1,6 @@
 !> Files that a user makes beside the results to speak to a run.
 module mpm_control_files
-  use mpm_file_rotation, only: remove_file
+  use mpm_file_exchange, only: remove_file
   implicit none
   private
   public :: take_request

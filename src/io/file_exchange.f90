@@ -6,7 +6,7 @@ module mpm_file_exchange
   use mpm_system_failure, only: system_failure
   implicit none
   private
-  public :: exchange_file, remove_file, replace_file, sync_file
+  public :: exchange_file, remove_file, replace_file, rotate_file, sync_file
 
   integer(c_int), parameter :: current_folder = -100_c_int !! AT_FDCWD of Linux
   integer(c_int), parameter :: exchange_names = 2_c_int    !! RENAME_EXCHANGE of Linux
@@ -110,6 +110,26 @@ contains
     if (kept) kept = c_rename(path//suffix//c_null_char, new//c_null_char) == 0_c_int
   end subroutine exchange_file
 
+  !> Lets a complete new file take the place of the present one, which becomes the previous one.
+  !! At every moment there is a complete file under one of the two names.
+  subroutine rotate_file(new, present, previous, error)
+    character(*), intent(in) :: new                  !! path of the new file
+    character(*), intent(in) :: present              !! path that it gets
+    character(*), intent(in) :: previous             !! path of the one that it replaces
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+    type(error_t), allocatable :: ignored
+    integer(c_int) :: status
+
+    call remove_file(previous)
+    ! Without second names on this file system it is renamed; there may be none.
+    status = c_link(present//c_null_char, previous//c_null_char)
+    if (status /= 0_c_int) status = c_rename(present//c_null_char, previous//c_null_char)
+    call replace_file(new, present, error)
+    if (allocated(error)) return
+    ! The names, too, must outlive a power cut; not every file system can do that.
+    call sync_file(present(:index(present, "/", back=.true.))//".", ignored)
+  end subroutine rotate_file
+
   !> Removes a file; no effect if there is none.
   subroutine remove_file(path)
     character(*), intent(in) :: path !! file
@@ -119,7 +139,7 @@ contains
 
   !> Brings a file to the disk: it outlives a power cut from then on.
   subroutine sync_file(path, error)
-    character(*), intent(in) :: path                 !! closed file
+    character(*), intent(in) :: path                 !! closed file, or folder for the names in it
     type(error_t), allocatable, intent(out) :: error !! exit_file
     type(c_ptr) :: stream
 

@@ -9,7 +9,7 @@ module mpm_record_file
                   h5pset_userblock_f, hid_t, hsize_t
   use mpm_checksum, only: checksum_of_text, checksum_text
   use mpm_error, only: error_t, exit_file, make_error
-  use mpm_file_rotation, only: sync_file
+  use mpm_file_exchange, only: sync_file
   use mpm_hdf5_failure, only: hdf5_failure
   use mpm_kinds, only: ip
   use mpm_text, only: integer_text, parse_integer
@@ -110,11 +110,10 @@ contains
       status = 1
     end if
     if (status == 0) then
-      call sync_file(path, status)
-      reason = "it could not be brought to the disk"
+      call sync_file(path, error)
+    else
+      call make_error(error, exit_file, "error: cannot write '"//path//"': "//trim(reason))
     end if
-    if (status /= 0) call make_error(error, exit_file, "error: cannot write '"//path//"': "// &
-                                     trim(reason))
   end subroutine seal_record
 
   !> Compares a file with its seal.

@@ -1,7 +1,7 @@
 !> JOB.restart.h5: a run on the disk, to go on from.
 module mpm_restart_file
   use mpm_error, only: error_t
-  use mpm_file_rotation, only: remove_file, rotate_file
+  use mpm_file_exchange, only: remove_file, rotate_file
   use mpm_kinds, only: dp
   use mpm_model, only: model_t, restart_by_clock
   use mpm_record_file, only: close_record, create_record, open_record, record_t, seal_record
