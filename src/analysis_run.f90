@@ -3,6 +3,7 @@ module mpm_analysis_run
   use mpm_equilibrium, only: newton_report_t
   use mpm_increments, only: schedule_t
   use mpm_kinds, only: dp, ip
+  use mpm_limit_load, only: limit_watch_t
   use mpm_point_location, only: locator_t
   use mpm_restart_state, only: restart_t
   use mpm_system, only: body_t, system_t
@@ -17,6 +18,7 @@ module mpm_analysis_run
     type(schedule_t) :: schedule
     type(locator_t)  :: locator
     type(newton_report_t) :: report           !! of the last attempt
+    type(limit_watch_t) :: watch              !! of the loads
     type(restart_t)  :: kept                  !! the run after the last accepted increment, without
                                               !! mesh and points, which change in none but that
     real(dp), allocatable :: u_start(:, :)    !! (n_dim, n)  displacements of the points at the

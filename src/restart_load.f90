@@ -108,6 +108,7 @@ contains
       body%surface = analysis%kept%surface
       analysis%system%trial = body%points%state
     end associate
+    analysis%system%u_last = state%delta_u
     analysis%u_start = analysis%kept%u_start
     deallocate (analysis%kept%mesh_x)
     if (inverted > 0) call make_error(error, exit_file, "error: the restart file does not fit: "// &

@@ -3,20 +3,20 @@ module mpm_solve_job
   use mpm_amplitude, only: time_increment_t
   use mpm_analysis_run, only: analysis_t, wall_time
   use mpm_dof_map, only: number_dofs, start_where_nodes_stand, turn_prescribed
-  use mpm_equilibrium, only: find_equilibrium, newton_report_t, outcome_converged, &
-                             outcome_interrupted
+  use mpm_equilibrium, only: find_equilibrium, outcome_converged, outcome_interrupted
   use mpm_error, only: error_t, exit_model, exit_no_convergence, exit_solver, make_error
   use mpm_external_force, only: check_applied, external_force, prepare_loads
   use mpm_geostatic_step, only: report_move
-  use mpm_ghost_penalty, only: build_ghost, ghost_share
-  use mpm_increment_work, only: reference_work
-  use mpm_increments, only: accept_step, begin_step, schedule_t, start_increment
+  use mpm_ghost_penalty, only: build_ghost
+  use mpm_increments, only: accept_step, begin_step, guess_ratio, keep_below_stretch, schedule_t, &
+                            start_increment
   use mpm_kinds, only: dp
+  use mpm_limit_load, only: begin_watch, watch_increment
+  use mpm_limit_note, only: note_limit_load
   use mpm_linear_solver, only: analyse, solver_memory, solver_ok
   use mpm_mesh_layout, only: lay_out_mesh
   use mpm_model, only: formulation_fbar, formulation_standard, model_t
   use mpm_model_signature, only: model_signature
-  use mpm_nodal_frames, only: part_along
   use mpm_patches, only: patches_of_single_elements
   use mpm_point_location, only: locate_points, location_report_t, lost_is_error
   use mpm_point_update, only: accept_points
@@ -26,9 +26,9 @@ module mpm_solve_job
   use mpm_restart_state, only: restart_t
   use mpm_run_failure, only: check_count, check_held, memory_error, place_of, record_failure, &
     refuse_mechanism, report_lost_point, shorten
+  use mpm_run_notes, only: note_attempt, note_equilibrium, note_location
   use mpm_run_output, only: run_output_t, write_attempt, write_increment, write_last_state
-  use mpm_run_state, only: make_run_state, note_balance, note_checkerboard, note_constraints, &
-                           run_state_t
+  use mpm_run_state, only: make_run_state, note_checkerboard, run_state_t
   use mpm_sparsity, only: build_pattern, pattern_is_current
   use mpm_surface_points, only: locate_surface_points
   use mpm_system, only: body_t, find_active, free_system, open_system, system_t
@@ -146,6 +146,7 @@ contains
     type(model_t), intent(inout)      :: model    !! not changed
     type(error_t), allocatable, intent(out) :: error
 
+    call begin_watch(analysis%watch)
     associate (body => analysis%body, system => analysis%system, schedule => analysis%schedule, &
                report => analysis%report)
       do while (.not. schedule%finished)
@@ -155,6 +156,7 @@ contains
           error%message = error%message//place_of(schedule, model)
           return
         end if
+        system%guess_ratio = guess_ratio(schedule)
         call find_equilibrium(system, report, body, model%step(schedule%step)%newton)
         call refuse_mechanism(report, body, system%u, schedule, model)
         call note_attempt(state, schedule, report, system, body)
@@ -165,12 +167,19 @@ contains
           call obey_requests(analysis, output, model, error)
           return
         else if (report%outcome /= outcome_converged) then
+          call note_limit_load(analysis%watch, output, system, report, schedule, error)
+          if (allocated(error)) return
           call check_held(error, body, report, schedule, model)
           if (allocated(error)) return
           call shorten(schedule, report, system, model, error)
           if (allocated(error)) return
+          call keep_below_stretch(schedule, report%stretch, &
+                                  model%step(schedule%step)%newton%max_stretch)
           cycle
         end if
+        call watch_increment(analysis%watch, system, report, schedule)
+        call note_limit_load(analysis%watch, output, system, report, schedule, error)
+        if (allocated(error)) return
         call close_increment(analysis, output, state, model, report%n_iterations, error)
         if (allocated(error)) return
       end do
@@ -198,7 +207,10 @@ contains
         return
       end if
       call accept_points(body, system)
+      system%u_last = system%u
       call accept_step(schedule, n_iterations)
+      call keep_below_stretch(schedule, analysis%report%stretch, &
+                              model%step(schedule%step)%newton%max_stretch)
       call locate_points(body%points, body%mesh, analysis%locator, model%location, location)
       call find_active(system, body%points)
       call locate_surface_points(body%surface, body%mesh, system%active)
@@ -227,6 +239,7 @@ contains
     body%surface = model%surface
     body%material = model%material
     body%ghost_gamma = model%ghost_gamma
+    body%ghost_adapts = model%ghost_adapts
     select case (model%formulation)
     case (formulation_fbar)
       body%patches = model%patches
@@ -275,8 +288,8 @@ contains
       call check_applied(error, system%f_ext, step%load, system%dofs, body%mesh, body%surface)
     end associate
     if (allocated(error)) return
-    call build_ghost(system%ghost, body%ghost_gamma, body%mesh, body%points, body%material, &
-                     system%active)
+    call build_ghost(system%ghost, ghost_factor(body, schedule), body%mesh, body%points, &
+                     body%material, system%active)
     if (pattern_is_current(system%map, system%active, system%dofs, system%ghost%node)) return
     call build_pattern(system%tangent, system%map, body%patches, body%mesh, system%dofs, &
                        system%active, system%ghost%node)
@@ -292,102 +305,13 @@ contains
     end if
   end subroutine prepare_increment
 
-  !> What an attempt was.
-  subroutine note_attempt(state, schedule, report, system, body)
-    type(run_state_t), intent(inout)  :: state
-    type(schedule_t), intent(in)      :: schedule
-    type(newton_report_t), intent(in) :: report
-    type(system_t), intent(in)        :: system
-    type(body_t), intent(in)          :: body
+  !> Factor of the ghost penalty in an attempt, raised where the deck leaves it to the run.
+  pure real(dp) function ghost_factor(body, schedule) result(gamma)
+    type(body_t), intent(in)     :: body
+    type(schedule_t), intent(in) :: schedule
 
-    state%step = schedule%step
-    state%increment = schedule%increment
-    state%attempt = schedule%attempt
-    state%size = schedule%size
-    state%time = schedule%total_time + schedule%size
-    state%step_time = schedule%step_time + schedule%size
-    state%n_iterations = report%n_iterations
-    state%residual = report%residual(report%n_iterations)
-    state%n_active_elements = size(system%element)
-    state%eigenvalue = [report%eigenvalues%smallest, report%eigenvalues%largest]
-    if (body%ghost_gamma > 0.0_dp) state%n_ghost_pairs = system%ghost%pairs%n
-    state%wall_seconds = wall_time() - state%started
-  end subroutine note_attempt
-
-  !> Forces and displacements of the converged increment.
-  subroutine note_equilibrium(state, system, body, model)
-    type(run_state_t), intent(inout) :: state
-    type(system_t), intent(in)       :: system
-    type(body_t), intent(in)         :: body
-    type(model_t), intent(in)        :: model
-
-    call note_constraints(state, body%patches, system)
-    call note_share(state, system, body) ! before the forces of the start are overwritten
-    state%applied = system%f_ext
-    state%reaction = part_along(model%frames, system%f_int - system%f_ext, system%dofs%fixed)
-    call note_balance(state, system)
-    state%delta_u = system%u
-    state%node_u = state%node_u + system%u
-    state%delta_j = 1.0_dp
-    state%delta_j(system%element) = 1.0_dp + system%kinematics%delta_j_m1(system%element)
-    state%delta_j_patch = patch_means(state%delta_j, system%element, body%mesh%volume, &
-                                      model%patches%of_element, model%patches%n)
-  end subroutine note_equilibrium
-
-  !> What the ghost penalty carries of the load; without pairs nothing is computed.
-  subroutine note_share(state, system, body)
-    type(run_state_t), intent(inout) :: state !! with the forces at the start of the increment
-    type(system_t), intent(in)       :: system
-    type(body_t), intent(in)         :: body
-    real(dp) :: work
-
-    state%ghost_share_now = 0.0_dp
-    if (system%ghost%pairs%n == 0) return
-    work = reference_work(sum(system%u*(state%applied + state%reaction)), &
-                          sum(system%u*system%f_int), body%points, &
-                          system%kinematics%disp_grad_bar)
-    state%ghost_share_now = ghost_share(system%ghost, system%u, work, &
-                                        maxval(abs(state%node_u) + abs(system%u)))
-    state%ghost_share = max(state%ghost_share, state%ghost_share_now)
-  end subroutine note_share
-
-  !> Mean volume change of the patches of the deck, also with the standard method, which does not
-  !! use it. Source: theory.md (4).
-  pure function patch_means(delta_j, element, volume, of_element, n_patch) result(mean)
-    real(dp), intent(in) :: delta_j(:)    !! (n_el)  det dF [-]
-    integer, intent(in)  :: element(:)    !! active elements
-    real(dp), intent(in) :: volume(:)     !! (n_el)  at the start of the increment
-    integer, intent(in)  :: of_element(:) !! (n_el)  patch of each element
-    integer, intent(in)  :: n_patch
-    real(dp) :: mean(n_patch)             !! 1 for an empty patch [-]
-    real(dp) :: total(n_patch)
-    integer :: i, e
-
-    mean = 0.0_dp
-    total = 0.0_dp
-    do i = 1, size(element)
-      e = element(i)
-      mean(of_element(e)) = mean(of_element(e)) + volume(e)*delta_j(e)
-      total(of_element(e)) = total(of_element(e)) + volume(e)
-    end do
-    where (total > 0.0_dp)
-      mean = mean/total
-    elsewhere
-      mean = 1.0_dp
-    end where
-  end function patch_means
-
-  !> Times and counts after the acceptance.
-  subroutine note_location(state, schedule, location)
-    type(run_state_t), intent(inout)    :: state
-    type(schedule_t), intent(in)        :: schedule
-    type(location_report_t), intent(in) :: location
-
-    state%increment_total = schedule%increment_total
-    state%time = schedule%total_time
-    state%step_time = schedule%step_time
-    state%n_extrapolated = location%n_extrapolated
-    state%n_lost = state%n_lost + location%n_lost
-  end subroutine note_location
+    gamma = body%ghost_gamma
+    if (body%ghost_adapts) gamma = gamma*schedule%ghost_raise
+  end function ghost_factor
 
 end module mpm_solve_job

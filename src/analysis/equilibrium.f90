@@ -7,6 +7,7 @@ module mpm_equilibrium
   use mpm_ghost_penalty, only: add_ghost_force, add_ghost_tangent
   use mpm_interruption, only: received_signal
   use mpm_kinds, only: dp
+  use mpm_kinematics, only: find_largest_stretch
   use mpm_linear_solver, only: factorize, solve, solver_memory, solver_not_finite, solver_ok
   use mpm_nodal_frames, only: in_local_axes, part_along
   use mpm_system, only: body_t, evaluate, evaluation_inverted, evaluation_ok, system_t
@@ -16,7 +17,7 @@ module mpm_equilibrium
   public :: newton_settings_t, newton_report_t
   public :: outcome_converged, outcome_inverted, outcome_material, outcome_stagnated
   public :: outcome_iterations, outcome_singular, outcome_memory, outcome_interrupted
-  public :: outcome_not_finite
+  public :: outcome_not_finite, outcome_stretched
 
   integer, parameter :: outcome_converged = 0  !! equilibrium found
   integer, parameter :: outcome_inverted = 1   !! an active element turned inside out
@@ -27,6 +28,9 @@ module mpm_equilibrium
   integer, parameter :: outcome_memory = 6     !! linear solver out of memory
   integer, parameter :: outcome_interrupted = 7 !! a signal asks to end
   integer, parameter :: outcome_not_finite = 8 !! displacements or forces are infinite or no numbers
+  integer, parameter :: outcome_stretched = 9  !! equilibrium found, but the increment is too large
+
+  real(dp), parameter :: near = 0.1_dp !! largest residual of a prediction worth a start [-]
 
   !> Controls of Newton's method (*CONTROLS).
   type :: newton_settings_t
@@ -34,6 +38,8 @@ module mpm_equilibrium
     integer  :: max_iterations = 20   !! corrections in one increment
     integer  :: max_backtracks = 8    !! halvings of one correction
     logical  :: eigenvalues = .false. !! look for extreme eigenvalues of the tangent in the end
+    logical  :: prediction = .true.   !! start from the last increment where that is near
+    real(dp) :: max_stretch = 1.0_dp  !! largest |ln(principal stretch)| in one increment [-]
   end type newton_settings_t
 
   !> What Newton's method did in one attempt at an increment.
@@ -49,6 +55,11 @@ module mpm_equilibrium
     integer :: n_plastic = 0               !! points that flowed in the last evaluation
     integer, allocatable :: flowing(:)     !! (0:n_iterations)  points that flow
     real(dp) :: rcond = 1.0_dp             !! smallest over largest pivot, least one of all factors [-]
+    real(dp) :: at_rest = 0.0_dp           !! relative residual without any displacement [-]
+    logical  :: predicted = .false.        !! began with the motion of the last increment
+    integer  :: n_given_up = 0             !! corrections after a prediction that led nowhere
+    real(dp) :: stretch = 0.0_dp           !! largest one of an active element, once in equilibrium [-]
+    real(dp) :: reach = 0.0_dp             !! largest way of the load in one correction [length]
     type(eigenvalues_t) :: eigenvalues     !! of the last tangent, if they were asked for
   end type newton_report_t
 
@@ -56,6 +67,7 @@ module mpm_equilibrium
   type :: newton_state_t
     real(dp), allocatable :: residual(:) !! (n)  f_ext - f_int of the unknowns [force]
     real(dp), allocatable :: x(:)        !! (n)  correction [length]
+    logical  :: moved = .false.          !! the start already has the prescribed displacements
     real(dp) :: norm = 0.0_dp            !! of the residual [force]
     real(dp) :: stiffness = 0.0_dp       !! largest entry of the tangent [force/length]
   end type newton_state_t
@@ -70,12 +82,82 @@ contains
     type(body_t), intent(in)            :: body
     type(newton_settings_t), intent(in) :: settings
     type(newton_state_t) :: newton
-    integer :: iteration
+    real(dp) :: seconds(5)
+    integer  :: n_given_up
 
     call open_report(report, settings%max_iterations)
     allocate (newton%residual(system%dofs%n), newton%x(system%dofs%n))
+    call start_at_rest(newton, system, report, body)
+    if (settings%prediction .and. system%guess_ratio > 0.0_dp) then
+      call predict(newton, system, report, body)
+      if (report%predicted) call iterate(newton, system, report, body, settings)
+    end if
+    if (report%predicted .and. all(report%outcome /= [outcome_converged, outcome_interrupted, &
+                                                      outcome_memory])) then
+      n_given_up = report%n_iterations
+      seconds = sum(report%seconds, dim=2)
+      call open_report(report, settings%max_iterations)
+      report%n_given_up = n_given_up
+      report%seconds(:, 1) = seconds
+      call start_at_rest(newton, system, report, body)
+    end if
+    if (.not. report%predicted) call iterate(newton, system, report, body, settings)
+    if (report%outcome == outcome_converged) call judge_stretch(report, system, settings)
+    if (report%outcome == outcome_converged .and. settings%eigenvalues) then
+      call find_eigenvalues(report%eigenvalues, system%solver, system%tangent)
+    end if
+    call find_worst_node(report, system)
+    call close_report(report)
+  end subroutine find_equilibrium
+
+  !> No displacement: the prescribed one comes with the first correction.
+  subroutine start_at_rest(newton, system, report, body)
+    type(newton_state_t), intent(inout)  :: newton
+    type(system_t), intent(inout)        :: system
+    type(newton_report_t), intent(inout) :: report
+    type(body_t), intent(in)             :: body
+
+    report%outcome = outcome_converged
+    report%worst_element = 0
+    report%worst_point = 0
+    newton%moved = .false.
     system%u = 0.0_dp
     call measure(newton, system, report, body, 0)
+    report%at_rest = report%residual(0)
+  end subroutine start_at_rest
+
+  !> Starts with the prescribed displacements and, elsewhere, those of the last increment times
+  !! the ratio of the sizes; back to rest when that is far from equilibrium, or farther than rest.
+  !! Source: theory.md (15a).
+  subroutine predict(newton, system, report, body)
+    type(newton_state_t), intent(inout)  :: newton !! at rest
+    type(system_t), intent(inout)        :: system
+    type(newton_report_t), intent(inout) :: report
+    type(body_t), intent(in)             :: body
+    real(dp) :: norm_at_rest
+
+    if (report%outcome /= outcome_converged) return
+    norm_at_rest = newton%norm
+    call gather_free(system%dofs, system%u_last, newton%x)
+    system%u = system%dofs%prescribed
+    call add_solution(system%dofs, system%guess_ratio*newton%x, system%u)
+    call measure(newton, system, report, body, 0)
+    newton%moved = report%outcome == outcome_converged .and. report%residual(0) <= near
+    if (newton%moved .and. all(abs(system%dofs%prescribed) <= 0.0_dp)) &
+      newton%moved = newton%norm < norm_at_rest
+    report%predicted = newton%moved
+    if (.not. newton%moved) call start_at_rest(newton, system, report, body)
+  end subroutine predict
+
+  !> Corrections until the residual is small or cannot be made so.
+  subroutine iterate(newton, system, report, body, settings)
+    type(newton_state_t), intent(inout)  :: newton !! at the start
+    type(system_t), intent(inout)        :: system
+    type(newton_report_t), intent(inout) :: report
+    type(body_t), intent(in)             :: body
+    type(newton_settings_t), intent(in)  :: settings
+    integer :: iteration
+
     do iteration = 1, settings%max_iterations
       if (report%outcome /= outcome_converged) exit
       call correct(newton, system, report, body, iteration)
@@ -86,21 +168,30 @@ contains
       if (iteration == settings%max_iterations) report%outcome = outcome_iterations
       if (received_signal() /= 0) report%outcome = outcome_interrupted
     end do
-    if (report%outcome == outcome_converged .and. settings%eigenvalues) then
-      call find_eigenvalues(report%eigenvalues, system%solver, system%tangent)
-    end if
-    call find_worst_node(report, system)
-    call close_report(report)
-  end subroutine find_equilibrium
+  end subroutine iterate
 
-  !> Tangent, factors and the correction x. The first one carries the prescribed displacement.
+  !> Refuses an increment that stretches an element too far. Source: theory.md (15b).
+  pure subroutine judge_stretch(report, system, settings)
+    type(newton_report_t), intent(inout) :: report
+    type(system_t), intent(in)           :: system !! in equilibrium
+    type(newton_settings_t), intent(in)  :: settings
+    integer :: element
+
+    call find_largest_stretch(report%stretch, element, system%kinematics, system%element)
+    if (report%stretch <= settings%max_stretch) return
+    report%outcome = outcome_stretched
+    report%worst_element = element
+  end subroutine judge_stretch
+
+  !> Tangent, factors and the correction x. The first one from rest carries the prescribed
+  !! displacement.
   subroutine correct(newton, system, report, body, iteration)
     type(newton_state_t), intent(inout)  :: newton
     type(system_t), intent(inout)        :: system
     type(newton_report_t), intent(inout) :: report
     type(body_t), intent(in)             :: body
     integer, intent(in)                  :: iteration
-    real(dp), allocatable :: force(:, :), rhs(:)
+    real(dp), allocatable :: force(:, :), load(:), rhs(:)
     real(dp) :: clock(4)
     integer :: outcome
 
@@ -110,7 +201,7 @@ contains
     call add_ghost_tangent(system%tangent, system%map, system%ghost)
     newton%stiffness = maxval(abs(system%tangent%val))
     rhs = newton%residual
-    if (iteration == 1) then
+    if (iteration == 1 .and. .not. newton%moved) then
       allocate (force, mold=system%u)
       call apply_tangent(force, system%dofs%prescribed, system%map, body%mesh, body%patches, &
                          system%kinematics, system%sums)
@@ -128,7 +219,10 @@ contains
     report%seconds(3:5, iteration) = report%seconds(3:5, iteration) + (clock(2:4) - clock(1:3))
     select case (outcome)
     case (solver_ok)
-      return
+      allocate (load, mold=newton%x)
+      call gather_free(system%dofs, system%f_ext, load)
+      report%reach = max(report%reach, abs(dot_product(load, newton%x)) &
+                         /max(norm2(load), tiny(1.0_dp)/epsilon(1.0_dp)))
     case (solver_memory)
       report%outcome = outcome_memory
     case (solver_not_finite)
@@ -138,7 +232,8 @@ contains
     end select
   end subroutine correct
 
-  !> Applies the correction, from the second one on halved until the residual falls.
+  !> Applies the correction, halved until the residual falls, but for the one that carries the
+  !! prescribed displacement.
   subroutine step(newton, system, report, body, settings, iteration)
     type(newton_state_t), intent(inout)  :: newton
     type(system_t), intent(inout)        :: system
@@ -153,14 +248,14 @@ contains
     u = system%u
     norm = newton%norm
     length = 1.0_dp
-    if (iteration == 1) u = u + system%dofs%prescribed
+    if (iteration == 1 .and. .not. newton%moved) u = u + system%dofs%prescribed
     do n_halved = 0, settings%max_backtracks
       system%u = u
       call add_solution(system%dofs, length*newton%x, system%u)
       report%outcome = outcome_converged
       call measure(newton, system, report, body, iteration)
       report%backtracks(iteration) = n_halved
-      if (iteration == 1) return
+      if (iteration == 1 .and. .not. newton%moved) return
       if (report%outcome == outcome_converged) then
         if (newton%norm < norm .or. report%residual(iteration) <= settings%tolerance) return
       end if
@@ -250,7 +345,7 @@ contains
 
   !> Room for all iterations.
   pure subroutine open_report(report, max_iterations)
-    type(newton_report_t), intent(inout) :: report
+    type(newton_report_t), intent(out) :: report
     integer, intent(in) :: max_iterations
 
     allocate (report%residual(0:max_iterations), source=0.0_dp)
@@ -288,6 +383,7 @@ contains
     case (outcome_memory); text = "the linear solver ran out of memory"
     case (outcome_interrupted); text = "interrupted"
     case (outcome_not_finite); text = "displacements or forces are not finite"
+    case (outcome_stretched); text = "an element was stretched beyond MAX STRETCH"
     case default; text = "unknown outcome"
     end select
   end function outcome_text

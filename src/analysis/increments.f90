@@ -4,7 +4,10 @@ module mpm_increments
   implicit none
   private
   public :: schedule_settings_t, schedule_t
-  public :: accept_step, begin_step, cut_back, resume_step, start_increment
+  public :: accept_step, begin_step, cut_back, guess_ratio, keep_below_stretch, resume_step
+  public :: start_increment
+
+  real(dp), parameter :: most_raise = 100.0_dp !! largest factor on the ghost penalty [-]
 
   !> *STATIC and the INC of *STEP.
   type :: schedule_settings_t
@@ -30,6 +33,8 @@ module mpm_increments
     real(dp) :: planned = 0.0_dp     !! size before it was shortened to hit a stop
     real(dp), allocatable :: stop_time(:) !! step times that must be hit, ascending, the last one is the period
     integer  :: n_cuts = 0           !! cut-backs in the step so far
+    real(dp) :: last_size = 0.0_dp   !! of the last accepted increment in the step, 0 before the first
+    real(dp) :: ghost_raise = 1.0_dp !! factor on a ghost penalty whose strength is left to the run [-]
     logical  :: finished = .false.   !! the end of the step is reached
   end type schedule_t
 
@@ -49,6 +54,7 @@ contains
     schedule%step_time = 0.0_dp
     schedule%total_start = schedule%total_time
     schedule%n_cuts = 0
+    schedule%last_size = 0.0_dp
     schedule%finished = .false.
     schedule%planned = min(settings%initial, settings%period)
     call sort_stops(schedule, stop_time)
@@ -112,7 +118,7 @@ contains
   pure subroutine accept_step(schedule, n_iterations)
     type(schedule_t), intent(inout) :: schedule
     integer, intent(in) :: n_iterations !! of the accepted increment
-    integer, parameter :: easy = 6, hard = 12
+    integer, parameter :: very_easy = 3, easy = 6, hard = 12
     real(dp) :: stop_at
 
     stop_at = next_stop(schedule)
@@ -125,25 +131,57 @@ contains
     end if
     schedule%finished = schedule%step_time >= schedule%settings%period
     schedule%increment_total = schedule%increment_total + 1
+    schedule%last_size = schedule%size
     if (schedule%settings%direct) then
       schedule%planned = min(2.0_dp*schedule%planned, schedule%settings%initial)
       if (schedule%attempt > 1) schedule%planned = min(schedule%planned, schedule%size)
+    else if (n_iterations <= very_easy .and. schedule%attempt == 1) then
+      schedule%planned = min(2.0_dp*schedule%planned, schedule%settings%maximum)
     else if (n_iterations <= easy .and. schedule%attempt == 1) then
       schedule%planned = min(1.5_dp*schedule%planned, schedule%settings%maximum)
     else if (n_iterations > hard) then
       schedule%planned = max(0.5_dp*schedule%planned, schedule%settings%minimum)
     end if
+    if (schedule%attempt == 1) schedule%ghost_raise = max(1.0_dp, 0.5_dp*schedule%ghost_raise)
     schedule%attempt = 0
   end subroutine accept_step
 
-  !> Quarters a failed increment. At the smallest size the schedule is exhausted.
+  !> Quarters a failed increment. At the smallest size the schedule is exhausted. Where one cut does
+  !! not help, what stops the run may be an element at the edge of the body: the penalty grows.
+  !! Source: theory.md (15c), section 13.
   pure subroutine cut_back(schedule, exhausted)
     type(schedule_t), intent(inout) :: schedule
     logical, intent(out) :: exhausted !! .true.: the failed increment was already the smallest
 
     schedule%n_cuts = schedule%n_cuts + 1
+    if (schedule%attempt > 1) schedule%ghost_raise = min(10.0_dp*schedule%ghost_raise, most_raise)
     exhausted = schedule%size <= schedule%settings%minimum*(1.0_dp + 1.0e-9_dp)
     schedule%planned = max(0.25_dp*schedule%size, schedule%settings%minimum)
   end subroutine cut_back
+
+  !> Plans the next attempt so that it stays below the largest stretch, as far as the last one,
+  !! accepted or not, tells. Source: theory.md (15b).
+  pure subroutine keep_below_stretch(schedule, stretch, limit)
+    type(schedule_t), intent(inout) :: schedule !! after acceptance or cut; its size is the last one
+    real(dp), intent(in) :: stretch             !! of the last attempt, 0 if not known [-]
+    real(dp), intent(in) :: limit               !! largest one [-]
+    real(dp), parameter :: margin = 0.9_dp
+
+    if (schedule%settings%direct .and. stretch <= limit) return
+    if (stretch <= tiny(stretch)) return
+    schedule%planned = max(schedule%settings%minimum, &
+                           min(schedule%planned, margin*limit/stretch*schedule%size))
+  end subroutine keep_below_stretch
+
+  !> Factor from the displacements of the last increment to a guess of those of this one; 0 for
+  !! none: the first increment of a step, and any after a cut. Source: theory.md (15a).
+  pure function guess_ratio(schedule) result(ratio)
+    type(schedule_t), intent(in) :: schedule !! an increment is open
+    real(dp) :: ratio                        !! [-]
+
+    ratio = 0.0_dp
+    if (schedule%attempt == 1 .and. schedule%last_size > 0.0_dp) &
+      ratio = schedule%size/schedule%last_size
+  end function guess_ratio
 
 end module mpm_increments

@@ -2,10 +2,11 @@
 module mpm_kinematics
   use mpm_kinds, only: dp
   use mpm_mesh, only: mesh_t
-  use mpm_tensor, only: det_m1, identity, inverse
+  use mpm_symmetric_eigen, only: eigen_symmetric
+  use mpm_tensor, only: det_m1, identity, inverse, log1p, voigt_from_tensor
   implicit none
   private
-  public :: kinematics_t, allocate_kinematics, compute_kinematics
+  public :: kinematics_t, allocate_kinematics, compute_kinematics, find_largest_stretch
 
   real(dp), parameter :: flat = 1.0e-12_dp !! J_e below this is rounding, not volume [-]
 
@@ -66,5 +67,28 @@ contains
     !$omp end parallel do
     if (inverted == huge(inverted)) inverted = 0
   end subroutine compute_kinematics
+
+  !> The active element that an increment stretches or squeezes most. Source: theory.md (15b).
+  pure subroutine find_largest_stretch(stretch, worst, kinematics, element)
+    real(dp), intent(out) :: stretch             !! largest |ln(principal stretch)| of dF [-]
+    integer, intent(out)  :: worst               !! its element, of equal ones the first; 0 at rest
+    type(kinematics_t), intent(in) :: kinematics !! computed
+    integer, intent(in)   :: element(:)          !! active elements, not inverted
+    real(dp) :: h(3, 3), square_m1(3), axes(3, 3), here
+    integer  :: i
+
+    stretch = 0.0_dp
+    worst = 0
+    do i = 1, size(element)
+      h = kinematics%disp_grad(:, :, element(i))
+      call eigen_symmetric(voigt_from_tensor(h + transpose(h) + matmul(transpose(h), h)), &
+                           square_m1, axes)
+      here = 0.5_dp*max(log1p(maxval(square_m1)), &
+                        -log1p(max(minval(square_m1), flat - 1.0_dp)))
+      if (here <= stretch) cycle
+      stretch = here
+      worst = element(i)
+    end do
+  end subroutine find_largest_stretch
 
 end module mpm_kinematics

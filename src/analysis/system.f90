@@ -32,6 +32,7 @@ module mpm_system
     type(surface_points_t) :: surface           !! carry tractions with the body
     type(material_t), allocatable :: material(:)
     real(dp) :: ghost_gamma = 0.0_dp            !! factor of the ghost penalty [-], 0 = none
+    logical  :: ghost_adapts = .false.          !! the run may raise it after failed attempts
   end type body_t
 
   !> Work space of an increment. It holds foreign handles: release it with `free_system`.
@@ -39,6 +40,8 @@ module mpm_system
     logical, allocatable  :: active(:)      !! (n_el)           hosts a point
     integer, allocatable  :: element(:)     !! (n_active)       active elements, ascending
     real(dp), allocatable :: u(:, :)        !! (n_dim, n_node)  displacement of the increment [length]
+    real(dp), allocatable :: u_last(:, :)   !! (n_dim, n_node)  that of the last accepted increment; a restart needs it [length]
+    real(dp) :: guess_ratio = 0.0_dp        !! size of this increment over that of the last one, 0: start at rest
     real(dp), allocatable :: f_int(:, :)    !! (n_dim, n_node)  internal force and penalty [force]
     real(dp), allocatable :: f_ext(:, :)    !! (n_dim, n_node)  applied force [force]
     type(dof_map_t)       :: dofs
@@ -64,6 +67,7 @@ contains
     allocate (system%active(body%mesh%n_el), source=.false.)
     allocate (system%element(0))
     allocate (system%u(body%mesh%n_dim, body%mesh%n_node), source=0.0_dp)
+    allocate (system%u_last, source=system%u)
     allocate (system%f_int, source=system%u)
     allocate (system%f_ext, source=system%u)
     call allocate_kinematics(system%kinematics, body%mesh)

@@ -82,6 +82,12 @@ contains
     call add_parameter(schema, value_rule_t("MAX BACKTRACKS", value_integer, required=.false., &
                                             range=">= 0", default="8", &
                                             meaning="halvings of one correction"))
+    call add_parameter(schema, value_rule_t("MAX STRETCH", value_real, required=.false., &
+                                            range="> 0", default="1.0", &
+                                            meaning="logarithmic stretch in one increment"))
+    call add_parameter(schema, value_rule_t("PREDICTION", value_choice, required=.false., &
+                                            choices="ON|OFF", default="ON", &
+                                            meaning="start from the last increment"))
     call add_parameter(schema, value_rule_t("EIGENVALUES", value_flag, required=.false., &
                                             meaning="eigenvalues of the tangent in the log"))
     call add_parameter(schema, value_rule_t("RESET", value_flag, required=.false., &

@@ -123,7 +123,9 @@ contains
            //", at most "//integer_text(step%schedule%max_increments)//" increments"//line_end &
            //"    Newton: tolerance "//real_text(step%newton%tolerance) &
            //", at most "//integer_text(step%newton%max_iterations)//" iterations and " &
-           //integer_text(step%newton%max_backtracks)//" backtracks"//line_end
+           //integer_text(step%newton%max_backtracks)//" backtracks, prediction " &
+           //trim(merge("on ", "off", step%newton%prediction))//", stretch at most " &
+           //real_text(step%newton%max_stretch)//line_end
     if (step%newton%eigenvalues) text = text//"    eigenvalues of the tangent: " &
       & //"in every increment"//line_end
     if (allocated(step%constraint)) then

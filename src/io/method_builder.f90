@@ -2,7 +2,7 @@
 module mpm_method_builder
   use mpm_build_context, only: at_card, at_parameter, build_context_t, fault, fault_of, &
     & is_material, name_hint, require_element_set, require_node_set, use_name
-  use mpm_deck_card, only: deck_t, parameter_choice, parameter_integer, &
+  use mpm_deck_card, only: deck_t, has_parameter, parameter_choice, parameter_integer, &
     & parameter_real, parameter_reals, parameter_text
   use mpm_diagnostics, only: quoted
   use mpm_error, only: error_t
@@ -48,6 +48,7 @@ contains
         model%locking_meter = .true.
       case ("GHOST PENALTY")
         model%ghost_gamma = parameter_real(deck%card(i), "GAMMA", default_gamma)
+        model%ghost_adapts = .not. has_parameter(deck%card(i), "GAMMA")
       case default
         cycle
       end select

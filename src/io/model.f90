@@ -99,6 +99,7 @@ module mpm_model
     type(location_settings_t) :: location
     logical                   :: locking_meter = .false. !! lines of the meter in the log
     real(dp)                  :: ghost_gamma = 0.0_dp !! factor of *GHOST PENALTY, 0 = none
+    logical                   :: ghost_adapts = .false. !! without GAMMA: raised where cuts do not help
     type(amplitude_t), allocatable :: amplitude(:)
     type(step_t), allocatable :: step(:)
   end type model_t

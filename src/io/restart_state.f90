@@ -55,6 +55,8 @@ contains
     call exchange_real(record, "schedule_size", schedule%size, error)
     call exchange_real(record, "schedule_planned", schedule%planned, error)
     call exchange_integer(record, "schedule_n_cuts", schedule%n_cuts, error)
+    call exchange_real(record, "schedule_last_size", schedule%last_size, error)
+    call exchange_real(record, "schedule_ghost_raise", schedule%ghost_raise, error)
     call exchange_logical(record, "schedule_finished", schedule%finished, error)
   end subroutine exchange_schedule
 
@@ -76,6 +78,7 @@ contains
     call exchange_real(record, "state_residual", state%residual, error)
     call exchange_real(record, "state_wall_seconds", state%wall_seconds, error)
     call exchange_integer(record, "state_n_active_elements", state%n_active_elements, error)
+    call exchange_integer(record, "state_n_cuts", state%n_cuts, error)
     call exchange_integer(record, "state_n_lost", state%n_lost, error)
     call exchange_integer(record, "state_n_extrapolated", state%n_extrapolated, error)
     call exchange_integer(record, "state_n_unknowns", state%n_unknowns, error)
@@ -91,6 +94,7 @@ contains
     call exchange_reals(record, "state_eigenvalue", [2], state%eigenvalue, error)
     call exchange_real(record, "state_ghost_share_now", state%ghost_share_now, error)
     call exchange_real(record, "state_ghost_share", state%ghost_share, error)
+    call exchange_real(record, "state_ghost_raise", state%ghost_raise, error)
     call exchange_real(record, "state_balance_now", state%balance_now, error)
     call exchange_real(record, "state_balance", state%balance, error)
     call exchange_reals(record, "reaction", shape(state%reaction), state%reaction, error)

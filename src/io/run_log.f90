@@ -79,7 +79,7 @@ contains
     type(error_t), allocatable, intent(out) :: error !! exit_file
 
     log%n_attempts = log%n_attempts + 1
-    log%n_iterations = log%n_iterations + report%n_iterations
+    log%n_iterations = log%n_iterations + report%n_iterations + report%n_given_up
     if (allocated(report%seconds)) log%seconds = log%seconds + sum(report%seconds, 2)
     call write_line(log%file, attempt_text(state, report), error)
   end subroutine log_attempt
@@ -94,6 +94,9 @@ contains
     text = "step "//integer_text(state%step)//" increment "//integer_text(state%increment) &
            //" attempt "//integer_text(state%attempt)//", time "//real_text(state%time)//", size " &
            //real_text(state%size)
+    if (report%predicted) text = text//", start predicted"
+    if (report%n_given_up > 0) text = text//line_end//"  prediction given up after " &
+      & //integer_text(report%n_given_up)//" iterations"
     if (allocated(report%residual)) then
       do i = 0, ubound(report%residual, 1)
         text = text//line_end//iteration_text(report, i)
@@ -113,6 +116,7 @@ contains
     character(:), allocatable :: text
 
     text = "  ghost penalty: "//integer_text(state%n_ghost_pairs)//" pairs"
+    if (state%ghost_raise > 1.0_dp) text = text//", raised "//real_text(state%ghost_raise)//"-fold"
     if (report%outcome /= outcome_converged) return
     text = text//", share of the load "//real_text(state%ghost_share_now)
   end function ghost_text
@@ -197,6 +201,7 @@ contains
            //integer_text(n_failed_expectations(verdicts))//line_end//"increments: " &
            //integer_text(state%increment_total)//" accepted of "//integer_text(log%n_attempts) &
            //" attempts, "//integer_text(log%n_iterations)//" iterations"//line_end &
+           //"cut-backs: "//integer_text(state%n_cuts)//line_end &
            //"lost points: "//integer_text(state%n_lost)//", extrapolated " &
            //integer_text(state%n_extrapolated)//line_end//largest_share_text(state) &
            //"balance of forces: at most "//real_text(state%balance) &

@@ -55,6 +55,8 @@ module mpm_run_state
     integer  :: n_checked = 0           !! elements in the checkerboard index
     real(dp), allocatable :: checkerboard     !! index of the pressure [-]; unallocated: not asked
     integer  :: n_ghost_pairs = -1      !! pairs of elements of the ghost penalty, -1 without one
+    real(dp) :: ghost_raise = 1.0_dp    !! factor on the ghost penalty in the increment [-]
+    integer  :: n_cuts = 0              !! attempts of the run so far that failed
     real(dp) :: eigenvalue(2) = 0.0_dp  !! smallest and largest of the tangent, 0 if not asked for
     real(dp) :: ghost_share_now = 0.0_dp !! part of the load that the ghost penalty carries [-]
     real(dp) :: ghost_share = 0.0_dp    !! largest one of the run so far [-]

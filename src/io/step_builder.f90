@@ -3,8 +3,8 @@ module mpm_step_builder
   use mpm_boundary_builder, only: add_boundary, begin_boundary_step, boundary_state_t, &
     & close_boundary_step, fix_boundary, open_boundary, warn_released
   use mpm_build_context, only: at_field, build_context_t, fault
-  use mpm_deck_card, only: deck_t, field_count, field_real, has_parameter, parameter_integer, &
-    & parameter_real, parameter_text
+  use mpm_deck_card, only: deck_t, field_count, field_real, has_parameter, parameter_choice, &
+    & parameter_integer, parameter_real, parameter_text
   use mpm_expectation_builder, only: build_expectation
   use mpm_external_force, only: load_t
   use mpm_kinds, only: dp
@@ -198,6 +198,9 @@ contains
       newton%tolerance = parameter_real(card, "TOLERANCE", newton%tolerance)
       newton%max_iterations = parameter_integer(card, "MAX ITERATIONS", newton%max_iterations)
       newton%max_backtracks = parameter_integer(card, "MAX BACKTRACKS", newton%max_backtracks)
+      newton%max_stretch = parameter_real(card, "MAX STRETCH", newton%max_stretch)
+      newton%prediction = parameter_choice(card, "PREDICTION", trim(merge("ON ", "OFF", &
+                                           newton%prediction))) == "ON"
       newton%eigenvalues = newton%eigenvalues .or. has_parameter(card, "EIGENVALUES")
     end associate
   end subroutine build_controls
