@@ -107,7 +107,11 @@ contains
     call remove_file(path//suffix) ! may be there since a kill
     kept = c_link(path//c_null_char, path//suffix//c_null_char) == 0_c_int
     call replace_file(new, path, error)
-    if (kept) kept = c_rename(path//suffix//c_null_char, new//c_null_char) == 0_c_int
+    if (allocated(error)) then
+      call remove_file(path//suffix)
+    else if (kept) then
+      kept = c_rename(path//suffix//c_null_char, new//c_null_char) == 0_c_int
+    end if
   end subroutine exchange_file
 
   !> Lets a complete new file take the place of the present one, which becomes the previous one.
