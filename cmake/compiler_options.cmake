@@ -15,6 +15,9 @@ set(TESSERA_STANDARD_FLAGS -std=f2008)
 set(TESSERA_WARNING_FLAGS -Wall -Wextra -pedantic -Wno-uninitialized)
 set(TESSERA_DEBUG_FLAGS
   -Og -fcheck=all -finit-real=snan -ffpe-trap=invalid,zero,overflow -fbacktrace)
+# A finding ends the process: what reads hostile input in it must notice.
+set(TESSERA_SANITIZE_FLAGS
+  -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
 
 find_package(OpenMP REQUIRED COMPONENTS Fortran)
 
@@ -22,7 +25,9 @@ add_library(tessera_build INTERFACE)
 target_link_libraries(tessera_build INTERFACE OpenMP::OpenMP_Fortran)
 target_compile_options(tessera_build INTERFACE
   $<$<CONFIG:Debug>:${TESSERA_DEBUG_FLAGS}>
-  $<$<BOOL:${TESSERA_NATIVE}>:-march=native>)
+  $<$<BOOL:${TESSERA_NATIVE}>:-march=native>
+  $<$<BOOL:${TESSERA_SANITIZE}>:${TESSERA_SANITIZE_FLAGS}>)
+target_link_options(tessera_build INTERFACE $<$<BOOL:${TESSERA_SANITIZE}>:${TESSERA_SANITIZE_FLAGS}>)
 
 add_library(tessera_warnings INTERFACE)
 target_compile_options(tessera_warnings INTERFACE
@@ -39,6 +44,9 @@ if(build_type STREQUAL "DEBUG")
 endif()
 if(TESSERA_NATIVE)
   list(APPEND TESSERA_COMPILER_FLAGS -march=native)
+endif()
+if(TESSERA_SANITIZE)
+  list(APPEND TESSERA_COMPILER_FLAGS ${TESSERA_SANITIZE_FLAGS})
 endif()
 list(JOIN TESSERA_COMPILER_FLAGS " " TESSERA_COMPILER_FLAGS)
 unset(build_type)

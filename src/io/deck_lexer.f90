@@ -2,6 +2,8 @@
 module mpm_deck_lexer
   use mpm_deck_card, only: append_field, deck_field_t, deck_line_t
   use mpm_diagnostics, only: diagnostics_t, error_at_place
+  use mpm_input_file, only: load_input
+  use mpm_kinds, only: ip
   use mpm_source_excerpt, only: source_place_t
   use mpm_text, only: bytes_of_character, integer_text
   implicit none
@@ -35,22 +37,15 @@ contains
     type(source_file_t), intent(out) :: source       !! ready for next_line
     character(*), intent(in) :: path                 !! file to read
     character(:), allocatable, intent(out) :: reason !! why it could not be read, empty if it was
-    character(256) :: message
-    integer :: n_bytes, status, unit
+    integer :: n_bytes
 
-    reason = ""
     source%path = path
     allocate (source%field(16))
-    open (newunit=unit, file=path, action="read", status="old", access="stream", &
-          form="unformatted", iostat=status, iomsg=message)
-    if (status == 0) then
-      inquire (unit=unit, size=n_bytes)
-      allocate (character(max(n_bytes, 0)) :: source%text)
-      if (n_bytes > 0) read (unit, iostat=status, iomsg=message) source%text
-      close (unit)
-    end if
-    if (status /= 0) then
-      reason = trim(adjustl(message(index(message, ": ", back=.true.) + 1:)))
+    call load_input(source%text, path, reason)
+    if (len(reason) == 0 .and. len(source%text, ip) >= huge(n_bytes)) &
+      reason = "more than "//integer_text(huge(n_bytes))//" bytes"
+    if (len(reason) > 0) then
+      reason = trim(adjustl(reason(index(reason, ": ", back=.true.) + 1:)))
       return
     end if
     call make_unix_lines(source%text, n_bytes)

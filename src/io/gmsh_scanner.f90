@@ -1,5 +1,6 @@
 !> A mesh file in memory, read line by line and number by number; remembers the first failure.
 module mpm_gmsh_scanner
+  use mpm_input_file, only: load_input
   use mpm_kinds, only: dp, ip
   use mpm_text, only: integer_text, parse_real
   implicit none
@@ -32,28 +33,14 @@ contains
   subroutine load_text(scanner, path)
     type(gmsh_scanner_t), intent(out) :: scanner !! at the start of the file
     character(*), intent(in) :: path             !! file
-    integer :: unit, status
-    integer(ip) :: n_byte
-    character(256) :: reason
+    character(:), allocatable :: reason
 
     scanner%path = path
     scanner%section = ""
-    scanner%text = ""
-    reason = ""
-    open (newunit=unit, file=path, access="stream", form="unformatted", action="read", &
-          status="old", iostat=status, iomsg=reason)
-    if (status == 0) then
-      inquire (unit=unit, size=n_byte)
-      if (n_byte > 0) then
-        deallocate (scanner%text)
-        allocate (character(n_byte) :: scanner%text)
-        read (unit, iostat=status, iomsg=reason) scanner%text
-      end if
-      close (unit)
-    end if
-    if (status /= 0) then
-      scanner%message = "cannot be read ("//trim(reason)//"): expected a gmsh mesh"
-    else if (n_byte <= 0) then
+    call load_input(scanner%text, path, reason)
+    if (len(reason) > 0) then
+      scanner%message = "cannot be read ("//reason//"): expected a gmsh mesh"
+    else if (len(scanner%text, ip) == 0) then
       scanner%message = "the file is empty: expected a gmsh mesh"
     end if
   end subroutine load_text

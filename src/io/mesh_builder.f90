@@ -7,6 +7,7 @@ module mpm_mesh_builder
   use mpm_deck_mesh_builder, only: build_deck_mesh
   use mpm_error, only: error_t, exit_file, exit_model
   use mpm_gmsh_reader, only: read_gmsh
+  use mpm_input_file, only: check_input
   use mpm_kinds, only: dp
   use mpm_labelled_mesh, only: label_parents, labelled_mesh_t
   use mpm_mesh, only: mesh_t
@@ -98,23 +99,14 @@ contains
     type(deck_t), intent(in) :: deck                !! the deck
     type(build_context_t), intent(inout) :: context !! takes errors
     integer, intent(in) :: i_card                   !! *MESH
-    character(:), allocatable :: path
-    character(256) :: reason
-    character(1) :: first
-    integer :: unit, status, n_before
+    character(:), allocatable :: path, reason
+    integer :: n_before
 
     path = parameter_path(deck, deck%card(i_card), "FILE")
-    reason = ""
-    open (newunit=unit, file=path, access="stream", form="unformatted", action="read", &
-          status="old", iostat=status, iomsg=reason)
-    if (status == 0) then
-      read (unit, iostat=status, iomsg=reason) first
-      if (is_iostat_end(status)) status = 0
-      close (unit)
-    end if
-    if (status /= 0) then
+    call check_input(path, reason)
+    if (len(reason) > 0) then
       call fault(context, deck, at_parameter(i_card, "FILE"), "cannot read this mesh: " &
-        & //trim(reason)//": expected a gmsh file, 2.2 or 4.1 ASCII", code=exit_file)
+        & //reason//": expected a gmsh file, 2.2 or 4.1 ASCII", code=exit_file)
       return
     end if
     n_before = context%diag%n_errors

@@ -1,0 +1,1 @@
+"""Hostile input by the million: see docs/reliability.md and tools/fuzz."""

@@ -1,0 +1,59 @@
+"""Tries hostile decks, meshes and restart files: see docs/reliability.md."""
+
+import argparse
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+
+from fuzzing.campaign import Campaign  # noqa: E402
+
+
+def make_parser() -> argparse.ArgumentParser:
+    """The options."""
+    parser = argparse.ArgumentParser(
+        prog="tools/fuzz",
+        description="Try hostile input: no crash, no hang, no exit code outside the table.",
+        epilog="exit codes: 0 nothing found, 1 something found, 2 cannot start",
+        allow_abbrev=False,
+    )
+    build = ROOT / "build" / "sanitize" / "bin"
+    add = parser.add_argument
+    add("--decks", type=int, default=10000, metavar="N", help="mutations of decks")
+    add("--meshes", type=int, default=1000, metavar="N", help="mutations of meshes")
+    add("--seed", default="1", metavar="S", help="other mutations for each seed")
+    add("--no-extremes", action="store_true", help="without the very large files")
+    add("--driver", type=Path, default=build / "fuzz_driver", metavar="PATH",
+        help="what reads the inputs (default: that of build/sanitize)")  # fmt: skip
+    add("--program", type=Path, default=build / "tessera", metavar="PATH",
+        help="tessera, asked for its keywords (default: that of build/sanitize)")  # fmt: skip
+    add("--keep", type=Path, default=ROOT / "build" / "fuzz", metavar="DIR",
+        help="where inputs with findings go (default: build/fuzz)")  # fmt: skip
+    return parser
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """The program."""
+    options = make_parser().parse_args(arguments)
+    for path in (options.driver, options.program):
+        if not path.is_file():
+            print(f"fuzz: error: there is no program '{path}': build it first", file=sys.stderr)
+            return 2
+    campaign = Campaign(options.driver.resolve(), options.program.resolve(), options.seed,
+                        options.keep)  # fmt: skip
+    try:
+        found = [campaign.measure_seeds()]
+        if not options.no_extremes:
+            found.append(campaign.hostile())
+        found.append(campaign.decks(options.decks))
+        found.append(campaign.meshes(options.meshes))
+    finally:
+        campaign.close()
+    for figures in found:
+        print(figures.text())
+    return 1 if any(figures.findings for figures in found) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

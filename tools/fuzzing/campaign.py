@@ -1,0 +1,193 @@
+"""Input after input: what was tried, how fast, and what was found."""
+
+import hashlib
+import re
+import shutil
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from random import Random
+
+from fuzzing.deck_mutation import DeckMutator
+from fuzzing.driver import Answer, Driver
+from fuzzing.hostile import hostile_decks, make_special_files
+from fuzzing.mesh_mutation import MeshMutator
+from fuzzing.schema import Schema
+from fuzzing.seeds import ROOT, shipped, tested
+
+BATCH = 100  # inputs between two looks at the driver
+KEPT = 3  # inputs kept of each finding
+
+
+@dataclass
+class Figures:
+    """What was tried of one kind of input."""
+
+    kind: str
+    tried: int = 0
+    findings: Counter = field(default_factory=Counter)
+    hangs: int = 0
+    codes: Counter = field(default_factory=Counter)
+    slowest: float = 0.0  # CPU time [s]
+    slowest_name: str = ""
+    memory: float = 0.0  # [MiB]
+    seconds: float = 0.0  # wall time
+
+    def count(self, name: str, answer: Answer) -> None:
+        """Takes an answer in."""
+        self.tried += 1
+        self.codes[answer.code] += 1
+        self.memory = max(self.memory, answer.memory)
+        if answer.seconds > self.slowest:
+            self.slowest, self.slowest_name = answer.seconds, name
+        if answer.trouble:
+            self.findings[answer.trouble] += 1
+            self.hangs += answer.trouble == "hang"
+
+    def text(self) -> str:
+        """The figures in a few lines."""
+        codes = ", ".join(f"{code}: {n}" for code, n in sorted(self.codes.items(), key=str))
+        lines = [
+            f"{self.kind}: {self.tried} tried in {self.seconds:.0f} s, "
+            f"{self.tried / max(self.seconds, 1e-9):.0f} per second; "
+            f"{sum(self.findings.values())} findings of {len(self.findings)} kinds, "
+            f"{self.hangs} hangs",
+            f"  exit codes {codes}; largest memory of the process {self.memory:.0f} MiB; "
+            f"slowest {self.slowest_name}, {self.slowest:.2f} s of CPU time",
+        ]
+        lines += [f"  {n} x {what}" for what, n in self.findings.most_common()]
+        return "\n".join(lines)
+
+
+class Campaign:
+    """A run of the fuzzer."""
+
+    def __init__(self, driver: Path, program: Path, seed: str, keep: Path) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="tessera-fuzz-", dir=scratch()))
+        self.driver = Driver(driver, self.folder)
+        self.seed = seed
+        self.keep = keep
+        self.schema = Schema(program)
+        make_special_files(self.folder)
+        self.seeds = [*shipped(), *tested()]
+        for one in self.seeds:
+            for name, path in one.meshes.items():
+                if not (self.folder / name).exists():
+                    shutil.copy(path, self.folder / name)
+
+    def close(self) -> None:
+        """Ends the driver, removes the files."""
+        self.driver.stop()
+        shutil.rmtree(self.folder)
+
+    def random(self, kind: str, number: int) -> Random:
+        """The random numbers of one input: they do not depend on the others."""
+        return Random(f"{self.seed} {kind} {number}")
+
+    def measure_seeds(self) -> Figures:
+        """Runs every seed as it is; cheap ones are then used more often, slow ones hardly."""
+
+        def write(i: int, slot: Path) -> str:
+            slot.write_bytes(b"\n".join(self.seeds[i].lines))
+            return f"model\t{slot.name}"
+
+        def note(i: int, answer: Answer) -> None:
+            self.seeds[i].cost = answer.seconds or 1.0
+
+        return self.run("seeds", len(self.seeds), write, note)
+
+    def decks(self, n: int) -> Figures:
+        """Mutations of decks."""
+        mutator = DeckMutator(self.seeds, self.schema)
+
+        def write(i: int, slot: Path) -> str:
+            slot.write_bytes(mutator.make(self.random("deck", i)))
+            return f"model\t{slot.name}"
+
+        return self.run("decks", n, write)
+
+    def meshes(self, n: int) -> Figures:
+        """Mutations of meshes."""
+        mutator = MeshMutator(sorted((ROOT / "input").rglob("*.msh")))
+
+        def write(i: int, slot: Path) -> str:
+            mesh, deck = mutator.make(self.random("mesh", i))
+            slot.with_suffix(".msh").write_bytes(mesh)
+            slot.write_bytes(deck.replace(b"{mesh}", slot.stem.encode() + b".msh"))
+            return f"model\t{slot.name}"
+
+        return self.run("meshes", n, write)
+
+    def hostile(self) -> Figures:
+        """The handful of extreme inputs, each alone."""
+        figures = Figures("extremes")
+        start = time.monotonic()
+        for name, path in hostile_decks(self.folder):
+            request = f"model\t{path.name if path.parent == self.folder else path}"
+            self.driver.stop()
+            self.driver.send([request])
+            answer = self.driver.answers([request])[0]
+            figures.count(name, answer)
+            if answer.trouble:
+                print(f"extreme: {name}: {answer.trouble}", flush=True)
+        figures.seconds = time.monotonic() - start
+        return figures
+
+    def run(
+        self,
+        kind: str,
+        n: int,
+        write: Callable[[int, Path], str],
+        note: Callable[[int, Answer], None] | None = None,
+    ) -> Figures:
+        """Tries inputs 0 .. n-1: the next ones are made while the driver reads the last ones."""
+        figures = Figures(kind)
+        start = time.monotonic()
+        waiting: list[tuple[int, Path, str]] = []
+        for first in range(0, n + BATCH, BATCH):
+            batch = []
+            for i in range(first, min(first + BATCH, n)):
+                slot = self.folder / f"{'ab'[first // BATCH % 2]}{i - first}.inp"
+                batch.append((i, slot, write(i, slot)))
+            if waiting:
+                answers = self.driver.answers([request for _, _, request in waiting])
+            if batch:
+                self.driver.send([request for _, _, request in batch])
+            for (i, slot, _), answer in zip(waiting, answers if waiting else []):
+                figures.count(f"{kind}:{i}", answer)
+                if note:
+                    note(i, answer)
+                if answer.trouble:
+                    self.save(kind, i, slot, answer, figures)
+            waiting = batch
+            figures.seconds = time.monotonic() - start
+            if first % (100 * BATCH) == 0 and first > 0:
+                print(f"  {kind} {first}, {figures.tried / figures.seconds:.0f} per second, "
+                      f"{len(figures.findings)} kinds of findings", flush=True)  # fmt: skip
+        return figures
+
+    def save(self, kind: str, i: int, slot: Path, answer: Answer, figures: Figures) -> None:
+        """Keeps the first inputs of a finding and what the driver said."""
+        if figures.findings[answer.trouble] > KEPT:
+            return
+        name = re.sub(r"\W+", "-", answer.trouble)[:60]
+        name += "-" + hashlib.sha256(answer.trouble.encode()).hexdigest()[:6]
+        target = self.keep / name
+        target.mkdir(parents=True, exist_ok=True)
+        for path in (slot, slot.with_suffix(".msh")):
+            if path.exists() and (path == slot or kind == "meshes"):
+                text = path.read_bytes().replace(slot.stem.encode() + b".msh", b"%d.msh" % i)
+                (target / f"{kind}-{i}{path.suffix}").write_bytes(text)
+        (target / f"{kind}-{i}.txt").write_text(f"{answer.trouble}\n{answer.stderr}")
+        print(f"  {kind}:{i} {answer.trouble}", flush=True)
+
+
+def scratch() -> Path | None:
+    """A folder in memory, if there is one."""
+    shared = Path("/dev/shm")
+    return shared if shared.is_dir() else None
+
+
