@@ -1586,12 +1586,12 @@ job.inp:17:1: error: the initial stress of material point 1 in element 1 is outs
         PLANE,
         [
             ("*PLASTIC, LAW=VON MISES, STRENGTH=UNIAXIAL\n1.0, 0.0\n", ""),
-            ("*STEP", "*INITIAL CONDITIONS, TYPE=STRESS\nALL, -1e300, -1, -1\n*STEP"),
+            ("*STEP", "*INITIAL CONDITIONS, TYPE=STRESS\nALL, -1e30, -1, -1\n*STEP"),
         ],
         2,
         text("""
 job.inp:15:1: error: the initial stress of material point 1 in element 1 needs an elastic strain above 1: expected a stress well below the moduli of *ELASTIC
-   15 | ALL, -1e300, -1, -1
+   15 | ALL, -1e30, -1, -1
       | ^~~
 """),
     ),

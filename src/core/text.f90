@@ -7,7 +7,10 @@ module mpm_text
   public :: to_upper, same_name, normalize_keyword, nearest_word
   public :: bytes_of_character
   public :: parse_integer, parse_real, parse_real_list, integer_text, real_text, full_text
+  public :: largest_input
 
+  !> Numbers of the user reach up to it: products of a few of them do not overflow.
+  real(dp), parameter :: largest_input = 1.0e30_dp
   integer, parameter :: i64 = selected_int_kind(18)
 
   !> A decimal number taken apart: (-1)^negative * 0.digits * 10^exponent.

@@ -3,7 +3,8 @@ module mpm_deck_schema_value
   use mpm_deck_schema_rule, only: value_choice, value_flag, value_integer, value_item, &
     value_name, value_new_name, value_real, value_reals, value_rule_t, within_range
   use mpm_kinds, only: dp
-  use mpm_text, only: nearest_word, normalize_keyword, parse_integer, parse_real, parse_real_list
+  use mpm_text, only: largest_input, nearest_word, normalize_keyword, parse_integer, parse_real, &
+    parse_real_list, real_text
   implicit none
   private
   public :: value_is_valid, value_hint, is_choice, split_choices
@@ -30,8 +31,10 @@ contains
       number = real(i, dp)
     case (value_real)
       call parse_real(text, number, value_is_valid)
+      value_is_valid = value_is_valid .and. abs(number) <= largest_input
     case (value_reals)
       call parse_real_list(text, list, value_is_valid)
+      if (value_is_valid) value_is_valid = all(abs(list) <= largest_input)
     case (value_choice)
       value_is_valid = is_choice(text, rule%choices)
     case (value_name, value_new_name)
@@ -68,14 +71,22 @@ contains
     is_choice = len(word) > 0 .and. index("|"//trim(choices)//"|", "|"//word//"|") > 0
   end function is_choice
 
-  !> `did you mean 'A'?` behind a wrong choice, empty if none is close.
+  !> `did you mean 'A'?` behind a wrong choice, the limit behind a number that is beyond it; empty
+  !! if there is nothing to say.
   pure function value_hint(rule, text) result(hint)
     type(value_rule_t), intent(in) :: rule !! a parameter or field
     character(*), intent(in)       :: text !! the wrong value
     character(:), allocatable :: hint
     character(16), allocatable :: words(:)
+    real(dp), allocatable :: list(:)
+    logical :: ok
 
     hint = ""
+    if (rule%kind == value_real .or. rule%kind == value_reals) then
+      call parse_real_list(text, list, ok)
+      if (.not. ok) return
+      if (any(abs(list) > largest_input)) hint = "at most "//real_text(largest_input)//" in magnitude"
+    end if
     if (rule%kind /= value_choice) return
     call split_choices(rule%choices, words)
     hint = nearest_word(normalize_keyword(text), words)

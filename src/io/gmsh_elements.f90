@@ -1,7 +1,7 @@
 !> The section $Elements of a gmsh file.
 module mpm_gmsh_elements
-  use mpm_gmsh_mesh, only: gmsh_block_t, gmsh_mesh_t, max_nodes, type_dimension, &
-    & type_name, type_nodes
+  use mpm_gmsh_mesh, only: first_storage, gmsh_block_t, gmsh_mesh_t, grow, grow_blocks, grown_size, &
+    & max_nodes, type_dimension, type_name, type_nodes
   use mpm_gmsh_scanner, only: end_line, fail_at_line, fail_at_token, failed, gmsh_scanner_t, &
     & next_count, next_integer, next_line, number_failure, read_count
   use mpm_label_table, only: build_label_table, find_label, label_table_t
@@ -21,6 +21,7 @@ contains
     call read_count(scanner, n, "the number of elements")
     call allocate_elements(raw, n)
     do i = 1, n
+      call grow_elements(raw, i)
       call next_line(scanner, "the number of an element")
       call next_integer(scanner, raw%el_tag(i), "the number of an element")
       call next_integer(scanner, raw%el_type(i), "the type of an element")
@@ -77,11 +78,10 @@ contains
     call next_integer(scanner, bound, "the largest number of an element")
     call end_line(scanner, "four numbers")
     call allocate_elements(raw, n)
-    deallocate (raw%block)
-    allocate (raw%block(n_block))
     last = 0
     do i_block = 1, n_block
       first = last + 1
+      call grow_blocks(raw%block, i_block, n_block)
       call read_element_block(raw, scanner, raw%block(i_block), first, last)
       if (failed(scanner)) return
     end do
@@ -107,6 +107,9 @@ contains
     block%group = groups_of_entity(raw, block%dim, block%tag)
     call next_integer(scanner, el_type, "the type of the elements in the block")
     call check_type(scanner, el_type)
+    if (.not. failed(scanner) .and. type_dimension(el_type) /= block%dim) &
+      call fail_at_token(scanner, type_name(el_type)//" in an entity of dimension " &
+                         //integer_text(block%dim)//": expected elements of this dimension")
     call next_count(scanner, n, "the number of elements in the block")
     if (first - 1 + n > raw%n_el) call fail_at_token(scanner, "more elements than the " &
       & //integer_text(raw%n_el)//" announced: expected at most " &
@@ -114,8 +117,9 @@ contains
     call end_line(scanner, "four numbers")
     if (failed(scanner)) return
     last = first - 1 + n
-    raw%el_type(first:last) = el_type
     do i = first, last
+      call grow_elements(raw, i)
+      raw%el_type(i) = el_type
       call next_line(scanner, "the number of an element")
       call next_integer(scanner, raw%el_tag(i), "the number of an element")
       call read_element_nodes(raw, scanner, i)
@@ -150,14 +154,34 @@ contains
     expected = "the number of element "//integer_text(i)//" of "//integer_text(n)
   end function element_expected
 
-  !> Storage for elements.
+  !> Storage for the first elements.
   subroutine allocate_elements(raw, n)
     type(gmsh_mesh_t), intent(inout) :: raw !! element arrays are allocated
     integer, intent(in) :: n                !! elements
 
     raw%n_el = n
-    allocate (raw%el_tag(n), raw%el_type(n), raw%el_line(n), raw%node(max_nodes, n), source=0)
+    associate (n_first => min(n, first_storage))
+      allocate (raw%el_tag(n_first), raw%el_type(n_first), raw%el_line(n_first), source=0)
+      allocate (raw%node(max_nodes, n_first), source=0)
+    end associate
   end subroutine allocate_elements
+
+  !> Makes room for an element. Storage grows with what the file holds, not with what it announces.
+  subroutine grow_elements(raw, i)
+    type(gmsh_mesh_t), intent(inout) :: raw !! room for element i, never for more than n_el
+    integer, intent(in) :: i                !! element
+    integer, allocatable :: longer(:, :)
+    integer :: n
+
+    if (i <= size(raw%el_tag)) return
+    n = grown_size(size(raw%el_tag), raw%n_el)
+    call grow(raw%el_tag, n)
+    call grow(raw%el_type, n)
+    call grow(raw%el_line, n)
+    allocate (longer(max_nodes, n), source=0)
+    longer(:, :size(raw%node, 2)) = raw%node
+    call move_alloc(longer, raw%node)
+  end subroutine grow_elements
 
   !> Only simplices of order 1 and 2 are known.
   subroutine check_type(scanner, el_type)

@@ -6,9 +6,11 @@ module mpm_gmsh_mesh
   implicit none
   private
   public :: gmsh_mesh_t, gmsh_group_t, gmsh_block_t
+  public :: first_storage, grow, grow_blocks, grown_size
   public :: type_dimension, type_nodes, type_order, type_name, max_nodes
 
   integer, parameter :: max_nodes = 10 !! nodes of the largest known element
+  integer, parameter :: first_storage = 1024 !! items before storage grows
 
   !> A physical group: several elements under one name.
   type :: gmsh_group_t
@@ -45,6 +47,45 @@ module mpm_gmsh_mesh
   end type gmsh_mesh_t
 
 contains
+
+  !> The next size of storage that grows geometrically up to a size that was announced.
+  pure integer function grown_size(n, most)
+    integer, intent(in) :: n    !! size so far
+    integer, intent(in) :: most !! largest size
+
+    grown_size = most
+    if (n < most/2) grown_size = min(max(2*n, first_storage), most)
+  end function grown_size
+
+  !> Makes a list longer; new entries are zero.
+  pure subroutine grow(list, n)
+    integer, allocatable, intent(inout) :: list(:) !! (n) on return
+    integer, intent(in) :: n                       !! new size, not smaller
+    integer, allocatable :: longer(:)
+
+    allocate (longer(n), source=0)
+    longer(:size(list)) = list
+    call move_alloc(longer, list)
+  end subroutine grow
+
+  !> Makes room for a block or an entity.
+  subroutine grow_blocks(list, i, most)
+    type(gmsh_block_t), allocatable, intent(inout) :: list(:) !! room for item i
+    integer, intent(in) :: i                                  !! item
+    integer, intent(in) :: most                               !! items in the end, at least i
+    type(gmsh_block_t), allocatable :: longer(:)
+    integer :: j
+
+    if (i <= size(list)) return
+    allocate (longer(grown_size(size(list), most)))
+    do j = 1, size(list)
+      longer(j)%dim = list(j)%dim
+      longer(j)%tag = list(j)%tag
+      longer(j)%first = list(j)%first
+      call move_alloc(list(j)%group, longer(j)%group)
+    end do
+    call move_alloc(longer, list)
+  end subroutine grow_blocks
 
   !> Dimension of a gmsh element type that we know, -1 for others.
   pure integer function type_dimension(el_type) result(n_dim)

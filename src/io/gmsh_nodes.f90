@@ -1,8 +1,9 @@
 !> The section $Nodes of a gmsh file.
 module mpm_gmsh_nodes
-  use mpm_gmsh_mesh, only: gmsh_mesh_t
+  use mpm_gmsh_mesh, only: first_storage, gmsh_mesh_t, grow, grown_size
   use mpm_gmsh_scanner, only: end_line, fail_at_line, fail_at_token, failed, gmsh_scanner_t, &
     & next_count, next_integer, next_line, next_real, number_failure, read_count, rest_of_line
+  use mpm_kinds, only: dp
   use mpm_label_table, only: build_label_table
   use mpm_text, only: integer_text
   implicit none
@@ -20,6 +21,7 @@ contains
     call read_count(scanner, n, "the number of nodes")
     call allocate_nodes(raw, n)
     do i = 1, n
+      call grow_nodes(raw, i)
       call next_line(scanner, "another node")
       call next_integer(scanner, raw%node_tag(i), "the number of a node")
       call read_coordinates(raw, scanner, i)
@@ -80,6 +82,7 @@ contains
     if (failed(scanner)) return
     last = first - 1 + n
     do i = first, last
+      call grow_nodes(raw, i)
       call next_line(scanner, "the number of a node")
       call next_integer(scanner, raw%node_tag(i), "the number of a node")
       call end_line(scanner, "only the number of a node")
@@ -109,15 +112,33 @@ contains
     expected = "the number of node "//integer_text(i)//" of "//integer_text(n)
   end function node_expected
 
-  !> Storage for nodes.
+  !> Storage for the first nodes.
   subroutine allocate_nodes(raw, n)
     type(gmsh_mesh_t), intent(inout) :: raw !! node arrays are allocated
     integer, intent(in) :: n                !! nodes
 
     raw%n_node = n
-    allocate (raw%node_tag(n), raw%node_line(n), source=0)
-    allocate (raw%x(3, n))
+    associate (n_first => min(n, first_storage))
+      allocate (raw%node_tag(n_first), raw%node_line(n_first), source=0)
+      allocate (raw%x(3, n_first), source=0.0_dp)
+    end associate
   end subroutine allocate_nodes
+
+  !> Makes room for a node. Storage grows with what the file holds, not with what it announces.
+  subroutine grow_nodes(raw, i)
+    type(gmsh_mesh_t), intent(inout) :: raw !! room for node i, never for more than n_node
+    integer, intent(in) :: i                !! node
+    real(dp), allocatable :: longer(:, :)
+    integer :: n
+
+    if (i <= size(raw%node_tag)) return
+    n = grown_size(size(raw%node_tag), raw%n_node)
+    call grow(raw%node_tag, n)
+    call grow(raw%node_line, n)
+    allocate (longer(3, n), source=0.0_dp)
+    longer(:, :size(raw%x, 2)) = raw%x
+    call move_alloc(longer, raw%x)
+  end subroutine grow_nodes
 
   !> Coordinates of a node.
   subroutine read_coordinates(raw, scanner, i)

@@ -2,7 +2,8 @@
 module mpm_gmsh_scanner
   use mpm_input_file, only: load_input
   use mpm_kinds, only: dp, ip
-  use mpm_text, only: integer_text, parse_real
+  use mpm_source_excerpt, only: printable
+  use mpm_text, only: integer_text, largest_input, parse_real, real_text
   implicit none
   private
   public :: gmsh_scanner_t, load_text, failed, fail_at_token, fail_at_line, fail_at_end
@@ -69,7 +70,7 @@ contains
     character(*), intent(in) :: message            !! what is wrong and what was expected
 
     if (failed(scanner)) return
-    scanner%message = message
+    scanner%message = printable(message)
     scanner%error_line = line
     scanner%error_column = 1
   end subroutine fail_at_line
@@ -210,10 +211,11 @@ contains
     type(gmsh_scanner_t), intent(inout) :: scanner !! behind the number
     integer, intent(out)     :: n                  !! count, 0 after a failure
     character(*), intent(in) :: expected           !! what the count is
+    integer, parameter :: least = 2                !! characters of an item
 
     call next_integer(scanner, n, expected)
     if (n < 0) call fail_at_token(scanner, "a count below zero: expected "//expected)
-    if (n > bytes_left(scanner)) call fail_at_token(scanner, "the file is too short for this " &
+    if (n > bytes_left(scanner)/least + 1) call fail_at_token(scanner, "the file is too short for this " &
       & //"count: it was truncated, or the count is wrong: expected "//expected)
     if (failed(scanner)) n = 0
   end subroutine next_count
@@ -232,15 +234,19 @@ contains
     if (.not. ok) then
       value = 0.0_dp
       call fail_at_token(scanner, "'"//word(scanner)//"' is not a number: expected "//expected)
+    else if (abs(value) > largest_input) then
+      value = 0.0_dp
+      call fail_at_token(scanner, "'"//word(scanner)//"' is too large: expected "//expected &
+                         //", at most "//real_text(largest_input)//" in magnitude")
     end if
   end subroutine next_real
 
   !> The last word, cut to a length that fits a message.
   pure function word(scanner) result(shown)
     type(gmsh_scanner_t), intent(in) :: scanner !! behind a word
-    character(:), allocatable :: shown          !! printable
+    character(:), allocatable :: shown          !! any bytes
 
-    shown = printable(scanner%text(scanner%word_first:min(scanner%at - 1, scanner%word_first + 39)))
+    shown = scanner%text(scanner%word_first:min(scanner%at - 1, scanner%word_first + 39))
   end function word
 
   !> The line must end here.
@@ -299,26 +305,12 @@ contains
       if (first > len(scanner%text)) return
       length = index(scanner%text(first:), achar(10), kind=ip) - 1
       if (length < 0) length = len(scanner%text, ip) - first + 1
-      if (i == line) text = printable(scanner%text(first:first + min(length, 200_ip) - 1))
+      if (i == line) text = scanner%text(first:first + min(length, 200_ip) - 1)
       first = first + length + 1
     end do
+    if (len(text) == 0) return
+    if (text(len(text):) == achar(13)) text = text(:len(text) - 1)
+    text = printable(text)
   end function line_text
-
-  !> Replaces what a terminal cannot show.
-  pure function printable(text) result(clean)
-    character(*), intent(in) :: text     !! any bytes
-    character(:), allocatable :: clean   !! same length, without trailing carriage return
-    integer :: i
-
-    clean = text
-    do i = 1, len(text)
-      if (iachar(text(i:i)) == 9) clean(i:i) = " "
-      if (iachar(text(i:i)) < 32 .and. iachar(text(i:i)) /= 9) clean(i:i) = "?"
-      if (iachar(text(i:i)) > 126) clean(i:i) = "?"
-    end do
-    if (len(text) > 0) then
-      if (text(len(text):) == achar(13)) clean = clean(:len(text) - 1)
-    end if
-  end function printable
 
 end module mpm_gmsh_scanner

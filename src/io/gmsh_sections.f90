@@ -1,15 +1,18 @@
 !> The sections of a gmsh file, formats 2.2 and 4.1 in ASCII.
 module mpm_gmsh_sections
   use mpm_gmsh_elements, only: read_elements_22, read_elements_41
-  use mpm_gmsh_mesh, only: gmsh_block_t, gmsh_group_t, gmsh_mesh_t
+  use mpm_gmsh_mesh, only: gmsh_block_t, gmsh_group_t, gmsh_mesh_t, grow_blocks
   use mpm_gmsh_nodes, only: read_nodes_22, read_nodes_41
   use mpm_gmsh_scanner, only: end_line, fail_at_line, fail_at_token, failed, gmsh_scanner_t, &
     & next_count, next_integer, next_line, next_real, next_word, read_count, rest_of_line
-  use mpm_kinds, only: dp
+  use mpm_kinds, only: dp, ip
+  use mpm_source_excerpt, only: printable
   use mpm_text, only: integer_text, same_name
   implicit none
   private
   public :: read_sections
+
+  integer, parameter :: max_name = 80 !! characters of a name, as in a deck
 
 contains
 
@@ -175,6 +178,11 @@ contains
       end if
       group%name = group%name(2:len(group%name) - 1)
       group%line = scanner%line
+      if (len(group%name) > max_name .or. group%name /= printable(group%name)) then
+        call fail_at_token(scanner, "expected the name of a physical group as text in UTF-8, at " &
+                           //"most "//integer_text(max_name)//" characters")
+        return
+      end if
       call check_name(raw, scanner, group%name)
       raw%group = [raw%group, group]
     end do
@@ -207,11 +215,16 @@ contains
     end do
     call end_line(scanner, "four counts")
     if (failed(scanner)) return
-    allocate (entity(sum(n)))
+    if (sum(int(n, ip)) > huge(1)) then
+      call fail_at_token(scanner, "too many entities: expected at most "//integer_text(huge(1)))
+      return
+    end if
+    allocate (entity(0))
     n_entity = 0
     do dim = 0, 3
       do i = 1, n(dim)
         n_entity = n_entity + 1
+        call grow_blocks(entity, n_entity, sum(n))
         call read_entity(entity(n_entity), scanner, dim)
         if (failed(scanner)) return
       end do

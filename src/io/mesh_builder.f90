@@ -224,7 +224,7 @@ contains
 
   !> Splits the elements of the user into linear ones; faults of the mesh point at its card.
   subroutine build_linear_mesh(linear, mesh, deck, context, source)
-    type(mesh_t), intent(out) :: linear             !! complete when no error was added
+    type(mesh_t), intent(out) :: linear             !! complete; without elements after an error
     type(labelled_mesh_t), intent(in) :: mesh       !! mesh of the user with all sets
     type(deck_t), intent(in) :: deck                !! the deck
     type(build_context_t), intent(inout) :: context !! takes errors
@@ -232,8 +232,9 @@ contains
     type(error_t), allocatable :: error
 
     call split_parents(mesh%parent, linear, error)
-    if (allocated(error)) call fault_of(context, deck, place_of_fault(deck, source, &
-      & error%message), error)
+    if (.not. allocated(error)) return
+    linear%n_el = 0
+    call fault_of(context, deck, place_of_fault(deck, source, error%message), error)
   end subroutine build_linear_mesh
 
   !> Place of a faulty element: its line if the deck holds it, else the card of the mesh.

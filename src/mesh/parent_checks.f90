@@ -12,7 +12,8 @@ module mpm_parent_checks
   public :: check_parents
 
   real(dp), parameter :: off_centre = 0.25_dp !! farthest mid-edge node off the middle, in edges
-  real(dp), parameter :: flat = 1.0e-14_dp    !! least volume over cubed (2-D: squared) first edge
+  real(dp), parameter :: flat = 1.0e-14_dp    !! least volume over cubed (2-D: squared) longest edge
+  real(dp), parameter :: shortest = 1.0e-30_dp !! longest edge of an element: below it, squares vanish
 
 contains
 
@@ -73,12 +74,18 @@ contains
 
     real(dp) :: volume, edge
     character(:), allocatable :: kind
+    integer :: a, b
 
+    edge = 0.0_dp
     associate (corner => parent%node(:parent%n_dim + 1, e))
       volume = simplex_volume(parent%x(:, corner))
-      edge = sqrt(sum((parent%x(:, corner(2)) - parent%x(:, corner(1)))**2))
+      do a = 2, size(corner)
+        do b = 1, a - 1
+          edge = max(edge, norm2(parent%x(:, corner(a)) - parent%x(:, corner(b))))
+        end do
+      end do
     end associate
-    if (volume > flat*edge**parent%n_dim) return
+    if (volume > flat*edge**parent%n_dim .and. edge > shortest) return
     kind = "zero volume"
     if (volume < -flat*edge**parent%n_dim) kind = "negative volume "//real_text(volume)
     call make_error(error, exit_model, element_text(parent, e)//": "//kind// &

@@ -43,9 +43,9 @@ def main(arguments: list[str] | None = None) -> int:
     campaign = Campaign(options.driver.resolve(), options.program.resolve(), options.seed,
                         options.keep)  # fmt: skip
     try:
-        found = [campaign.measure_seeds()]
+        found = []
         if not options.no_extremes:
-            found.append(campaign.hostile())
+            found += [campaign.unchanged(), campaign.hostile()]
         found.append(campaign.decks(options.decks))
         found.append(campaign.meshes(options.meshes))
     finally:

@@ -35,12 +35,14 @@ class Figures:
     slowest_name: str = ""
     memory: float = 0.0  # [MiB]
     seconds: float = 0.0  # wall time
+    busy: float = 0.0  # CPU time of the driver [s]
 
     def count(self, name: str, answer: Answer) -> None:
         """Takes an answer in."""
         self.tried += 1
         self.codes[answer.code] += 1
         self.memory = max(self.memory, answer.memory)
+        self.busy += answer.seconds
         if answer.seconds > self.slowest:
             self.slowest, self.slowest_name = answer.seconds, name
         if answer.trouble:
@@ -52,7 +54,8 @@ class Figures:
         codes = ", ".join(f"{code}: {n}" for code, n in sorted(self.codes.items(), key=str))
         lines = [
             f"{self.kind}: {self.tried} tried in {self.seconds:.0f} s, "
-            f"{self.tried / max(self.seconds, 1e-9):.0f} per second; "
+            f"{self.tried / max(self.seconds, 1e-9):.0f} per second, "
+            f"{self.tried / max(self.busy, 1e-9):.0f} per second of CPU time; "
             f"{sum(self.findings.values())} findings of {len(self.findings)} kinds, "
             f"{self.hangs} hangs",
             f"  exit codes {codes}; largest memory of the process {self.memory:.0f} MiB; "
@@ -87,17 +90,14 @@ class Campaign:
         """The random numbers of one input: they do not depend on the others."""
         return Random(f"{self.seed} {kind} {number}")
 
-    def measure_seeds(self) -> Figures:
-        """Runs every seed as it is; cheap ones are then used more often, slow ones hardly."""
+    def unchanged(self) -> Figures:
+        """Every seed as it is."""
 
         def write(i: int, slot: Path) -> str:
             slot.write_bytes(b"\n".join(self.seeds[i].lines))
             return f"model\t{slot.name}"
 
-        def note(i: int, answer: Answer) -> None:
-            self.seeds[i].cost = answer.seconds or 1.0
-
-        return self.run("seeds", len(self.seeds), write, note)
+        return self.run("seeds", len(self.seeds), write)
 
     def decks(self, n: int) -> Figures:
         """Mutations of decks."""
@@ -136,13 +136,7 @@ class Campaign:
         figures.seconds = time.monotonic() - start
         return figures
 
-    def run(
-        self,
-        kind: str,
-        n: int,
-        write: Callable[[int, Path], str],
-        note: Callable[[int, Answer], None] | None = None,
-    ) -> Figures:
+    def run(self, kind: str, n: int, write: Callable[[int, Path], str]) -> Figures:
         """Tries inputs 0 .. n-1: the next ones are made while the driver reads the last ones."""
         figures = Figures(kind)
         start = time.monotonic()
@@ -158,8 +152,6 @@ class Campaign:
                 self.driver.send([request for _, _, request in batch])
             for (i, slot, _), answer in zip(waiting, answers if waiting else []):
                 figures.count(f"{kind}:{i}", answer)
-                if note:
-                    note(i, answer)
                 if answer.trouble:
                     self.save(kind, i, slot, answer, figures)
             waiting = batch
@@ -179,7 +171,7 @@ class Campaign:
         target.mkdir(parents=True, exist_ok=True)
         for path in (slot, slot.with_suffix(".msh")):
             if path.exists() and (path == slot or kind == "meshes"):
-                text = path.read_bytes().replace(slot.stem.encode() + b".msh", b"%d.msh" % i)
+                text = path.read_bytes().replace(slot.stem.encode() + b".msh", f"{kind}-{i}.msh".encode())
                 (target / f"{kind}-{i}{path.suffix}").write_bytes(text)
         (target / f"{kind}-{i}.txt").write_text(f"{answer.trouble}\n{answer.stderr}")
         print(f"  {kind}:{i} {answer.trouble}", flush=True)

@@ -26,7 +26,7 @@ class DeckMutator:
     def __init__(self, seeds: list[Seed], schema: Schema) -> None:
         self.seeds = seeds
         self.schema = schema
-        self.weights = list(accumulate(1.0 / (seed.cost + 5e-4) for seed in seeds))
+        self.weights = list(accumulate(seed.share / seed.cost() for seed in seeds))
         self.on_lines = (
             delete_line, repeat_line, swap_lines, move_card, delete_card, repeat_card,
             self.borrow_card, self.make_card, self.splice, self.rename_keyword, self.add_parameter,
@@ -34,8 +34,8 @@ class DeckMutator:
             self.make_card, self.borrow_card,
         )  # fmt: skip
         self.in_line = (
-            change_number, change_number, change_number, nudge_number, nudge_number, change_word,
-            self.choose_word, insert_piece, lengthen, cut_line, comment_out,
+            change_number, change_number, nudge_number, nudge_number, nudge_number, change_word,
+            self.choose_word, borrow_word, borrow_word, insert_piece, lengthen, cut_line, comment_out,
         )  # fmt: skip
         self.on_bytes = (
             flip_byte, insert_bytes, truncate, line_ends, mark, delete_bytes, repeat_bytes,
@@ -48,15 +48,16 @@ class DeckMutator:
     def make(self, random: Random) -> bytes:
         """A deck."""
         lines = list(self.pick(random).lines)
-        n = random.choice((1, 1, 1, 2, 2, 3, 4, 6))
+        n = random.choice((1, 1, 1, 1, 2, 2, 3, 5))
         for _ in range(n):
-            if random.random() < 0.55 and lines:
+            if random.random() < 0.65 and lines:
                 i = random.randrange(len(lines))
-                lines[i] = random.choice(self.in_line)(random, lines[i])
+                change = random.choice(self.in_line)
+                lines[i] = change(random, lines[i], random.choice(lines))
             else:
                 random.choice(self.on_lines)(random, lines)
         text = b"\n".join(lines)
-        while random.random() < 0.15:
+        while random.random() < 0.08:
             text = random.choice(self.on_bytes)(random, text)
         return text
 
@@ -95,7 +96,7 @@ class DeckMutator:
             text = random.choice((f", {name}={value}", f", {name}", f", {name}=", f",{name}=,"))
             lines[i] += text.encode("utf-8", "surrogatepass")
 
-    def choose_word(self, random: Random, line: bytes) -> bytes:
+    def choose_word(self, random: Random, line: bytes, _other: bytes) -> bytes:
         """A choice of any parameter in place of a word."""
         return replace(random, WORD, line, random.choice(self.schema.choices).encode())
 
@@ -223,12 +224,12 @@ def continue_line(random: Random, lines: Lines) -> None:
             lines[i:i] = [lines[i] + b","] * random.choice((2, 50, 500))
 
 
-def change_number(random: Random, line: bytes) -> bytes:
+def change_number(random: Random, line: bytes, _other: bytes) -> bytes:
     """An extreme number."""
     return replace(random, NUMBER, line, words.number(random).encode())
 
 
-def nudge_number(random: Random, line: bytes) -> bytes:
+def nudge_number(random: Random, line: bytes, _other: bytes) -> bytes:
     """A number nearby."""
     found = list(NUMBER.finditer(line))
     if not found:
@@ -237,32 +238,39 @@ def nudge_number(random: Random, line: bytes) -> bytes:
     return line[: match.start()] + words.near(random, match[0].decode()).encode() + line[match.end() :]
 
 
-def change_word(random: Random, line: bytes) -> bytes:
+def change_word(random: Random, line: bytes, _other: bytes) -> bytes:
     """Another word."""
     return replace(random, WORD, line, words.word(random).encode("utf-8", "surrogatepass"))
 
 
-def insert_piece(random: Random, line: bytes) -> bytes:
+def borrow_word(random: Random, line: bytes, other: bytes) -> bytes:
+    """A word or a number of another line of the deck."""
+    pattern = random.choice((NUMBER, WORD))
+    found = pattern.findall(other)
+    return replace(random, pattern, line, random.choice(found)) if found else line
+
+
+def insert_piece(random: Random, line: bytes, _other: bytes) -> bytes:
     """A piece of grammar where none belongs."""
     at = random.randint(0, len(line))
     piece = random.choice(words.PIECES).encode("utf-8", "surrogatepass")
     return line[:at] + piece + line[at:]
 
 
-def lengthen(random: Random, line: bytes) -> bytes:
+def lengthen(random: Random, line: bytes, _other: bytes) -> bytes:
     """A line near the limit of its length, or far beyond it."""
     n = random.choice((2047, 2048, 2049, 5000, 20000)) - len(line)
     at = random.choice((0, len(line)))
     return line[:at] + random.choice((b" ", b"x", b",", b"1", b"\xc3\xa9")) * max(n, 0) + line[at:]
 
 
-def cut_line(random: Random, line: bytes) -> bytes:
+def cut_line(random: Random, line: bytes, _other: bytes) -> bytes:
     """The start of a line, or its end."""
     at = random.randint(0, len(line))
     return random.choice((line[:at], line[at:]))
 
 
-def comment_out(random: Random, line: bytes) -> bytes:
+def comment_out(random: Random, line: bytes, _other: bytes) -> bytes:
     """A comment, or nearly one."""
     at = random.choice((0, random.randint(0, len(line))))
     return line[:at] + random.choice((b"**", b" ** ", b"*", b"#", b"!")) + line[at:]

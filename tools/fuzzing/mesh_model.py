@@ -141,11 +141,14 @@ def coordinates(model: Model, with_tag: bool) -> list[str]:
 
 def renumber(random: Random, model: Model) -> None:
     """Tags of nodes with gaps, up to the largest number of some width."""
-    most = 2 ** random.choice((8, 31, 31, 32, 40, 62, 63, 64)) - 1
-    new = dict(zip(model.nodes, random.sample(range(1, most + 1), len(model.nodes))))
+    bits = random.choice((10, 31, 31, 32, 40, 62, 63, 64))
+    tags: set[int] = set()
+    while len(tags) < len(model.nodes):
+        tags.add(random.getrandbits(bits) or 1)
+    new = dict(zip(model.nodes, tags))
     model.nodes = {new[tag]: x for tag, x in model.nodes.items()}
     for block in model.blocks:
-        block.elements = [[e[0], *(new[v] for v in e[1:])] for e in block.elements]
+        block.elements = [[e[0], *(new.get(v, v) for v in e[1:])] for e in block.elements]
 
 
 def renumber_elements(random: Random, model: Model) -> None:
