@@ -76,11 +76,13 @@ contains
     system%trial = body%points%state
   end subroutine open_system
 
-  !> Releases the factors of the linear solver.
+  !> Releases the factors of the linear solver and the tangent: what is large.
   subroutine free_system(system)
     type(system_t), intent(inout) :: system
 
     call free_solver(system%solver)
+    system%tangent = csc_matrix_t()
+    system%map = assembly_map_t()
   end subroutine free_system
 
   !> Active elements are those that host a point. Precondition: points are grouped by element.

@@ -1,13 +1,14 @@
 !> Direct solution of sparse linear systems: the one seam behind which solvers are exchanged.
 module mpm_linear_solver
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-  use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_null_ptr, c_ptr
   use mpm_csc_matrix, only: csc_matrix_t
   use mpm_kinds, only: dp, ip
-  use mpm_openblas_binding, only: openblas_set_num_threads
+  use mpm_memory, only: has_room
+  use mpm_openblas_binding, only: dtrsm, openblas_set_num_threads
   use mpm_umfpack_binding, only: control_ordering, control_refinements, control_strategy, &
     info_peak_estimate, info_rcond, info_unit, ordering_cholmod, status_ok, &
-    status_out_of_memory, strategy_symmetric, system_a, umfpack_control, umfpack_dl_defaults, &
+    status_ordering_failed, status_out_of_memory, strategy_symmetric, system_a, umfpack_control, umfpack_dl_defaults, &
     umfpack_dl_free_numeric, umfpack_dl_free_symbolic, umfpack_dl_numeric, umfpack_dl_solve, &
     umfpack_dl_symbolic, umfpack_info
   implicit none
@@ -20,6 +21,7 @@ module mpm_linear_solver
   integer, parameter :: solver_memory = 2   !! out of memory
   integer, parameter :: solver_not_finite = 3 !! the solution holds infinity or no numbers
 
+  integer(ip), parameter :: blas_buffer = 135000000_ip !! a little more than OpenBLAS takes [bytes]
   real(dp), parameter :: smallest_rcond = 1.0e-16_dp !! pivot ratio below which no digit is left
 
   !> A solver with its foreign handles: release them with `free_solver`. Never copy one that
@@ -52,6 +54,8 @@ contains
     if (matrix%n == 0) return
     ! More BLAS threads would make sums depend on their number and fight with OpenMP.
     call openblas_set_num_threads(1_c_int)
+    call take_blas_buffer(solver%n_analyses == 0, outcome)
+    if (outcome /= solver_ok) return
     call umfpack_dl_defaults(solver%control)
     solver%control(control_strategy) = real(strategy_symmetric, dp)
     solver%control(control_ordering) = real(ordering_cholmod, dp)
@@ -64,6 +68,24 @@ contains
     if (outcome == solver_ok) solver%memory = solver%info(info_peak_estimate) &
                                               *solver%info(info_unit)
   end subroutine analyse
+
+  !> Lets OpenBLAS take its working memory as long as there is some: it waits for ever when it needs
+  !! it and there is none. It keeps what it has got.
+  subroutine take_blas_buffer(is_first, outcome)
+    logical, intent(in)  :: is_first !! it may not have the memory yet
+    integer, intent(out) :: outcome  !! solver_ok or solver_memory
+    real(c_double) :: a(1, 1), b(1, 1)
+
+    outcome = solver_ok
+    if (.not. is_first) return
+    if (.not. has_room(blas_buffer)) then
+      outcome = solver_memory
+      return
+    end if
+    a = 1.0_c_double
+    b = 1.0_c_double
+    call dtrsm("L", "U", "N", "N", 1_c_int, 1_c_int, 1.0_c_double, a, 1_c_int, b, 1_c_int)
+  end subroutine take_blas_buffer
 
   !> Factorises a matrix whose pattern has been analysed.
   !! Singular: a zero pivot, or pivots whose ratio leaves no digit, or values that are not finite.
@@ -122,7 +144,7 @@ contains
     select case (status)
     case (status_ok)
       outcome = solver_ok
-    case (status_out_of_memory)
+    case (status_out_of_memory, status_ordering_failed) ! METIS and CHOLMOD do not say why
       outcome = solver_memory
     case default
       outcome = solver_singular

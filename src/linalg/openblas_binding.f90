@@ -1,9 +1,10 @@
-!> C interface of OpenBLAS, the library under UMFPACK; no logic.
+!> Interfaces of OpenBLAS, the library under UMFPACK; no logic.
+! allow(assumed-size)
 module mpm_openblas_binding
-  use, intrinsic :: iso_c_binding, only: c_int
+  use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int
   implicit none
   private
-  public :: openblas_set_num_threads
+  public :: dtrsm, openblas_set_num_threads
 
   interface
 
@@ -13,6 +14,23 @@ module mpm_openblas_binding
       implicit none
       integer(c_int), value :: n_threads !! at least 1
     end subroutine openblas_set_num_threads
+
+    !> Solves A X = alpha B with a triangular matrix A.
+    subroutine dtrsm(side, uplo, transa, diag, m, n, alpha, a, lda, b, ldb) bind(c, name="dtrsm_")
+      import :: c_char, c_double, c_int
+      implicit none
+      character(kind=c_char), intent(in) :: side   !! L: A stands to the left
+      character(kind=c_char), intent(in) :: uplo   !! U: upper triangle
+      character(kind=c_char), intent(in) :: transa !! N: as it is
+      character(kind=c_char), intent(in) :: diag   !! N: with its diagonal
+      integer(c_int), intent(in) :: m              !! rows of B
+      integer(c_int), intent(in) :: n              !! columns of B
+      real(c_double), intent(in) :: alpha          !! factor of B
+      integer(c_int), intent(in) :: lda            !! leading dimension of A
+      real(c_double), intent(in) :: a(lda, *)      !! triangle
+      integer(c_int), intent(in) :: ldb            !! leading dimension of B
+      real(c_double), intent(inout) :: b(ldb, *)   !! in B, out X
+    end subroutine dtrsm
 
   end interface
 

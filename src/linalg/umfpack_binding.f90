@@ -9,7 +9,7 @@ module mpm_umfpack_binding
   public :: umfpack_control, umfpack_info
   public :: control_strategy, control_ordering, control_refinements
   public :: strategy_symmetric, ordering_cholmod, info_peak_estimate, info_rcond, info_unit
-  public :: status_ok, status_singular, status_out_of_memory, system_a
+  public :: status_ok, status_ordering_failed, status_out_of_memory, status_singular, system_a
 
   ! Zero-based positions, as in umfpack.h.
   integer, parameter :: umfpack_control = 20     !! length of the array of controls
@@ -27,6 +27,7 @@ module mpm_umfpack_binding
   integer(c_long), parameter :: status_ok = 0             !! UMFPACK_OK
   integer(c_long), parameter :: status_singular = 1       !! UMFPACK_WARNING_singular_matrix
   integer(c_long), parameter :: status_out_of_memory = -1 !! UMFPACK_ERROR_out_of_memory
+  integer(c_long), parameter :: status_ordering_failed = -18 !! UMFPACK_ERROR_ordering_failed
   integer(c_long), parameter :: system_a = 0              !! UMFPACK_A: A x = b
 
   interface
