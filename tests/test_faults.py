@@ -446,6 +446,12 @@ def test_no_memory_for_the_pattern(run_with_limit, limit):
     assert attempts(run) == []
 
 
+def test_no_memory_for_the_buffer_of_blas(run_with_limit):
+    """OpenBLAS would wait for it for ever, in the middle of a factorisation."""
+    run = run_with_limit(square(plastic=True), 130_000_000)
+    check_failure(run, 5, "error: not enough memory for the analysis of 9 equations")
+
+
 def test_no_memory_for_the_points(run_with_limit):
     run = run_with_limit(ONE_PATCH.format(points=16), 12_000_000)
     assert run.code == 5

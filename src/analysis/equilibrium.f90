@@ -325,7 +325,7 @@ contains
     end if
   end function relative
 
-  !> Node with the largest residual.
+  !> Node with the largest residual; the first one where it is no number, if there is any.
   pure subroutine find_worst_node(report, system)
     type(newton_report_t), intent(inout) :: report
     type(system_t), intent(in)           :: system
@@ -335,7 +335,12 @@ contains
     largest = -1.0_dp
     do a = 1, size(system%u, 2)
       local = in_local_axes(system%dofs%frames, a, system%f_ext(:, a) - system%f_int(:, a))
-      here = norm2(merge(local, 0.0_dp, system%dofs%id(:, a) > 0))
+      local = merge(local, 0.0_dp, system%dofs%id(:, a) > 0)
+      if (.not. all(ieee_is_finite(local))) then
+        report%worst_node = a
+        return
+      end if
+      here = norm2(local)
       if (here > largest) then
         largest = here
         report%worst_node = a

@@ -80,6 +80,7 @@ contains
       end associate
     else
       evidence%node = maxloc(sum(residual**2, dim=1), dim=1, mask=active_nodes(body, system))
+      if (report%outcome == outcome_not_finite) evidence%node = report%worst_node
       if (evidence%node > 0) evidence%element = most_deformed(evidence%node, body, system)
     end if
     if (evidence%point == 0) evidence%point = point_near(evidence, body)
