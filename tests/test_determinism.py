@@ -95,6 +95,9 @@ def test_times_are_left_out(bar):
             file[f"tessera/iterations/{name}"][...] += 1.0
         file["tessera"].attrs["started"] = b"2000-01-01T00:00:00+00:00"
         file["tessera"].attrs["threads"] = np.int64(7)
+        file["tessera"].attrs["run"] = b"20000101T000000.000+0000-7"
+    with h5py.File(folder / "job_mesh.vtkhdf", "r+") as file:
+        file["VTKHDF"].attrs["run"] = b"20000101T000000.000+0000-7"
     os.utime(folder / "job.vtkhdf", (0, 0))
     assert checksum(folder, "job") == before
 

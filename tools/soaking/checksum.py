@@ -9,13 +9,14 @@ import numpy as np
 
 SECONDS = ("kinematics", "stress", "assembly", "factorisation", "solve")  # of tessera/iterations
 TIMES = {f"tessera/iterations/{name}" for name in SECONDS}
-OF_THE_MACHINE = {"started", "threads"}  # attributes of tessera
+OF_THE_MOMENT = {"started", "threads", "run"}  # of these groups, as attributes
+GROUPS = {"tessera", "VTKHDF"}
 
 
 def checksum(folder: Path, job: str) -> str:
     """SHA-256 of the history, and of all objects in both field files but wall and CPU times, the
-    date and the number of threads. The log and the status file tell times in every line: all that
-    is no time in them stands in the tables of the field file."""
+    date, the number of threads and the name of the run. The log and the status file tell times in
+    every line: all that is no time in them stands in the tables of the field file."""
     digest = hashlib.sha256()
     digest.update((folder / f"{job}_history.csv").read_bytes())
     for name in (f"{job}.vtkhdf", f"{job}_mesh.vtkhdf"):
@@ -35,7 +36,7 @@ def parts_of(file: h5py.File) -> Iterator[bytes]:
         thing = file[name]
         yield f"{name}\n".encode()
         for key in sorted(thing.attrs):
-            if not (name == "tessera" and key in OF_THE_MACHINE):
+            if not (name in GROUPS and key in OF_THE_MOMENT):
                 yield f"{key}\n".encode()
                 yield from bytes_of(np.asarray(thing.attrs[key]))
         if isinstance(thing, h5py.Dataset):
