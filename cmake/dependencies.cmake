@@ -7,7 +7,7 @@ find_package(ZLIB REQUIRED)
 # Without the component HL, which nothing here uses: on a Debian without the development files of curl
 # and OpenSSL CMake takes it for found, but names a library that does not exist.
 set(HDF5_PREFER_PARALLEL FALSE)
-find_package(HDF5 1.10 REQUIRED COMPONENTS Fortran)
+find_package(HDF5 1.10.3 REQUIRED COMPONENTS Fortran)
 
 add_library(tessera_hdf5 INTERFACE)
 target_include_directories(tessera_hdf5 SYSTEM INTERFACE ${HDF5_Fortran_INCLUDE_DIRS})

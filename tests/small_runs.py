@@ -1,5 +1,5 @@
-"""Small runs that are disturbed: a job of a few increments, faults of the file system, and what must
-hold of the files that are left."""
+"""Small runs that are disturbed: a job of a few increments, faults of the file system, and what
+must hold of the files that are left."""
 
 import os
 import subprocess
@@ -14,8 +14,8 @@ from conftest import ROOT
 JOB = "disturbed"  # also what paths of its files contain
 FILES = (f"{JOB}.vtkhdf", f"{JOB}_mesh.vtkhdf")
 
-# A bar of 4 x 1 with 96 points, pulled by 0.4 in eight increments. Points that leave the
-# mesh leave the file, so that their number changes.
+# A bar of 4 x 1 with 96 points, pulled by 0.4, in eight increments unless others are asked for.
+# Points that leave the mesh leave the file, so that their number changes.
 DECK = """\
 *HEADING
 Bar
@@ -31,20 +31,26 @@ Y, 0, 1, 1
 1000.0, 0.3
 *MATERIAL POINTS, ELSET=BAR, MATERIAL=STEEL, PER ELEMENT=3
 *LOST POINTS, ACTION=REMOVE
-*STEP, NAME=PULL, INC=50
+*STEP, NAME=PULL, INC=2000
 *STATIC, DIRECT
-0.125, 1.0
+{size}, 1.0
 *BOUNDARY
 X0, 1, 1
 Y0, 2, 2
 X1, 1, 1, 0.4
 *HISTORY, NSET=X1
 RF, U
-*OUTPUT, FIELD, FREQUENCY={every}
+*OUTPUT, FIELD, FREQUENCY=1
 S, PEEQ, U, ELEMENT
 *END STEP
 """
+N_STEPS = 9  # outputs of eight increments
 SECONDS = ("kinematics", "stress", "assembly", "factorisation", "solve")  # differ from run to run
+
+
+def deck_with(size=0.125):
+    """The deck with increments of a size."""
+    return DECK.format(size=size)
 
 
 @dataclass
@@ -83,16 +89,16 @@ def environment(library, fault=None, log=None):
 class SmallRun:
     """Runs the job in a folder, with faults if asked for."""
 
-    def __init__(self, program: Path, library: Path, folder: Path, every: int = 1) -> None:
+    def __init__(self, program: Path, library: Path, folder: Path, size: float = 0.125) -> None:
         self.program, self.library, self.folder = program, library, folder
         folder.mkdir(exist_ok=True)
-        (folder / f"{JOB}.inp").write_text(DECK.format(every=every), encoding="utf-8")
+        (folder / f"{JOB}.inp").write_text(deck_with(size), encoding="utf-8")
         self.command = [str(program), "-q", "-f", f"{JOB}.inp"]
 
-    def run(self, fault=None, *options, deck=None):
+    def run(self, fault=None):
         """Runs to the end or to the fault; the finished process."""
         return subprocess.run(
-            [*self.command[:-1], *options, deck or self.command[-1]],
+            self.command,
             cwd=self.folder,
             env=environment(self.library, fault, self.folder / "calls"),
             capture_output=True,
@@ -122,7 +128,7 @@ class SmallRun:
 
 
 def contents(path):
-    """Every dataset and attribute of an HDF5 file by its name, all of it read; None without a file."""
+    """Every dataset and attribute of an HDF5 file by its name; None if there is no file."""
     if not path.exists():
         return None
     found = {}

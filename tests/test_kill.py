@@ -13,12 +13,14 @@ import pyvista
 from small_runs import (
     FILES,
     JOB,
+    N_STEPS,
     Disturbance,
     SmallRun,
     build_faults,
     check_part,
     check_tables,
     complete_lines,
+    contents,
     n_converged,
 )
 from tessera_post.job import open_job
@@ -34,7 +36,7 @@ def library(tmp_path_factory):
 
 
 def check_texts(folder, whole):
-    """The lines of the status file and of the history are those of a whole run as far as they go."""
+    """Lines of the status file and the history are those of a whole run as far as they go."""
     lines = complete_lines(folder / f"{JOB}_history.csv")
     expected = complete_lines(whole / f"{JOB}_history.csv")
     assert lines == expected[: len(lines)]
@@ -47,9 +49,7 @@ def check_texts(folder, whole):
 
 def check_remains(folder, whole, expected, draw):
     """Everything that must hold of the files after a kill."""
-    run = SmallRun.__new__(SmallRun)
-    run.folder = folder
-    found = run.results
+    found = [contents(folder / name) for name in FILES]
     converged = n_converged(folder)
     written = check_texts(folder, whole)
     if found[0] is None:
@@ -117,6 +117,6 @@ def test_file_system_that_cannot_exchange_names(tessera, library, tmp_path, call
     result = other.run(Disturbance("22", 1, 1_000_000, calls))
     assert result.returncode == 0, result.stderr
     for found, wanted, name in zip(other.results, expected, FILES):
-        assert check_part(found, wanted, name) == 9
+        assert check_part(found, wanted, name) == N_STEPS
     left = sorted(path.name for path in other.folder.iterdir())
     assert not [name for name in left if name.endswith((".next", ".former"))]

@@ -3,6 +3,7 @@
 import csv
 import os
 import pty
+import re
 import resource
 import signal
 import subprocess
@@ -171,6 +172,10 @@ def test_group_tessera_tells_about_the_run(bar_run):
             assert len(tessera.attrs[name]) > 3
         iterations = {name: column[()] for name, column in tessera["iterations"].items()}
         ledger = {name: column[()] for name, column in tessera["ledger"].items()}
+        run = tessera.attrs["run"]
+    with h5py.File(bar_run.folder / "job_mesh.vtkhdf") as file:
+        assert file["VTKHDF"].attrs["run"] == run
+    assert re.fullmatch(rb"\d{8}T\d{6}\.\d{3}[+-]\d{4}-\d+", run)
     assert set(iterations["increment"]) == {1, 2, 3, 4}
     last = np.append(np.diff(iterations["iteration"]) < 0, True)
     assert np.all(iterations["residual"][last] <= 1e-9)

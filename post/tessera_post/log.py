@@ -76,10 +76,14 @@ def parse_log(text: str) -> Log:
     _, deck_ended, body = text.rpartition("\nend of deck\n")
     if not deck_ended:
         return log
-    body, _, summary = body.partition("\nsummary\n")
+    first, *later = re.split(r"\n(?=restarted )", body)
+    body, _, summary = first.partition("\nsummary\n")
     for block in re.split(r"\n\s*\n", body):
         parse_block(log, block.strip("\n").splitlines())
     log.attempts, log.messages = parse_attempts(body.splitlines())
+    for part in later:
+        body, _, summary = part.partition("\nsummary\n")
+        go_on(log, *parse_attempts(body.splitlines()[1:]))
     for line in summary.splitlines():
         found = VERDICT.fullmatch(line.strip())
         if found:
@@ -92,6 +96,15 @@ def parse_log(text: str) -> Log:
         elif line.strip():
             log.summary.append(line.strip())
     return log
+
+
+def go_on(log: Log, attempts: list[Attempt], messages: list[str]) -> None:
+    """What a run did after a restart takes the place of what it did from there on before."""
+    if attempts:
+        start = (attempts[0].step, attempts[0].increment)
+        log.attempts = [a for a in log.attempts if (a.step, a.increment) < start]
+    log.attempts += attempts
+    log.messages += messages
 
 
 def parse_block(log: Log, lines: list[str]) -> None:

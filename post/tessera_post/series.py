@@ -11,7 +11,7 @@ import numpy as np
 from tessera_post.errors import PostError, one_of
 
 VTK_TRIANGLE = 5
-MOST_TRIES = 50  # to read a file that changes all the time
+MOST_TRIES = 50  # to open a file that is locked, or to read one that changes all the time
 PAUSE = 0.02  # between them [s]
 Loaded = TypeVar("Loaded")
 
@@ -28,18 +28,23 @@ UNREADABLE = (
 
 
 def open_hdf5(path: Path) -> h5py.File:
-    """An HDF5 file for reading, also while a run is writing it."""
+    """An HDF5 file for reading, also while a run is going on: the run leaves it alone as long as it
+    is open, and locks it for a moment only before it was opened."""
     if not path.exists():
         raise PostError(f"there is no file '{path}'")
     if path.is_dir():
         raise PostError(f"'{path}' is a folder: expected a result file")
     try:
-        is_hdf5 = h5py.is_hdf5(path)
-        if is_hdf5:
-            return h5py.File(path, "r", locking=False)
+        if not h5py.is_hdf5(path):
+            raise PostError(f"'{path}' is no HDF5 file: expected a .vtkhdf file of Tessera")
+        for _ in range(MOST_TRIES):
+            try:
+                return h5py.File(path, "r")
+            except BlockingIOError:
+                time.sleep(PAUSE)
+        return h5py.File(path, "r", locking=False)
     except OSError as problem:
         raise PostError(f"cannot read '{path}': {first_line(problem)}") from problem
-    raise PostError(f"'{path}' is no HDF5 file: expected a .vtkhdf file of Tessera")
 
 
 def stamp_of(path: Path) -> tuple[int, int]:

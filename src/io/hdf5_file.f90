@@ -77,7 +77,9 @@ contains
     file%is_open = status >= 0
     file%has_news = .true.
     file%has_new_objects = .true.
-    if (status < 0) call hdf5_failure(error, path, "create")
+    if (file%is_open) return
+    call hdf5_failure(error, path, "create")
+    call remove_file(path//suffix) ! may have been made, but not written
   end subroutine create_hdf5_file
 
   !> Opens the copy that is written to.

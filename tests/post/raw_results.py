@@ -28,6 +28,6 @@ class RawOutput:
 
 def raw_outputs(path):
     """All outputs of a file."""
-    with h5py.File(path, locking=False) as file:
+    with h5py.File(path) as file:
         grid = file["VTKHDF"]
         return [RawOutput(grid, step) for step in range(grid["Steps"].attrs["NSteps"])]

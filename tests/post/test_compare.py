@@ -293,7 +293,7 @@ def test_killed_runs_are_compared_as_far_as_both_go(killed, tessera_release, pos
     assert "'bar' has not finished" in err
     n_times = []
     for job in (killed, other):
-        with h5py.File(f"{job}.vtkhdf", locking=False) as file:
+        with h5py.File(f"{job}.vtkhdf") as file:
             n_times.append(min(len(column) for column in file["tessera/history"].values()))
     few, many = sorted(n_times)
     assert f"note: {few} increments compared, time 0 included; left out: " in err

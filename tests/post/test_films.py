@@ -124,7 +124,7 @@ def test_film_keeps_camera_and_scale(bar, drawn):  # noqa: F811
     assert len({image.shape for image in images}) == 1
     assert len({id(scale) for _, _, scale, _ in drawn}) == 1
     path = bar.with_name("bar.vtkhdf")
-    with h5py.File(path, locking=False) as file:
+    with h5py.File(path) as file:
         stress = file["VTKHDF/PointData/S"][:, 0]
     assert drawn[0][2].low <= stress.min()
     assert drawn[0][2].high == pytest.approx(stress.max())
@@ -140,7 +140,7 @@ def test_film_names_the_numbers_of_things(bar, monkeypatch):
     monkeypatch.setattr(animate, "compose", keep)
     film = Film([open_job(str(bar))], PictureOptions(field="PATCH"), 1)
     list(film.images())
-    with h5py.File(bar.with_name("bar.vtkhdf"), locking=False) as file:
+    with h5py.File(bar.with_name("bar.vtkhdf")) as file:
         patches = np.unique(file["VTKHDF/PointData/PATCH"][()])
     assert {sheet.categories for sheet in sheets} == {tuple(patches)}
 

@@ -153,6 +153,22 @@ def test_every_beginning_of_a_log_is_read(name, request):
     assert whole.exit_code is not None
 
 
+def test_log_of_a_restarted_run_tells_each_increment_once(bar):
+    text = (bar.parent / f"{bar.name}.log").read_text()
+    whole = parse_log(text)
+    heads = [line for line in text.splitlines() if line.startswith("step 1 increment")]
+    interrupted = text[: text.index(heads[3])] + "interrupted\n\nsummary\nexit code: 130\n"
+    again = text[text.index(heads[2]) :]
+    found = parse_log(f"{interrupted}\nrestarted today from bar.restart.h5\n{again}")
+    assert found.attempts == whole.attempts
+    assert found.messages == ["interrupted"]
+    assert (found.summary, found.exit_code) == (whole.summary, 0)
+    assert (found.settings, found.model) == (whole.settings, whole.model)
+    unfinished = parse_log(f"{interrupted}\nrestarted today from bar.restart.h5\n")
+    assert unfinished.exit_code is None
+    assert unfinished.attempts == whole.attempts[:3]
+
+
 def test_words_of_the_log_in_a_deck_do_not_mislead(run_deck, tmp_path):
     heading = "A bar\nend of deck\n\nsummary\nexit code: 5\nwarnings"
     log = log_of(run_deck(tmp_path, bar_deck(heading=heading)))

@@ -17,7 +17,7 @@ from tessera_post.style import make_scale
 
 def rows(path, name, output=-1, kind="PointData"):
     """A dataset of an output, read without tessera_post."""
-    with h5py.File(path, locking=False) as file:
+    with h5py.File(path) as file:
         grid = file["VTKHDF"]
         if name == "Points":
             first, count = grid["Steps/PointOffsets"][output], grid["NumberOfPoints"][()]

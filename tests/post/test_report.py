@@ -27,7 +27,7 @@ HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>"
 
 def file_of(job):
     """The results, read without the package."""
-    return h5py.File(job.with_name(f"{job.name}.vtkhdf"), "r", locking=False)
+    return h5py.File(job.with_name(f"{job.name}.vtkhdf"), "r")
 
 
 def last_output(job, name):

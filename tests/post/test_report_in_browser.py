@@ -140,7 +140,7 @@ def test_page_loads_without_complaint_and_without_any_request(chromium, load, an
 
 def test_hover_shows_the_history_with_units(chromium, load, bar):
     load(bar)
-    with h5py.File(bar.with_suffix(".vtkhdf"), "r", locking=False) as file:
+    with h5py.File(bar.with_suffix(".vtkhdf"), "r") as file:
         force = file["tessera/history/RF1[X1]"][2]
         moved = file["tessera/history/U1[X1]"][2]
     lines = hover_over(chromium, "reaction", 0, 2)
