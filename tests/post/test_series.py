@@ -2,6 +2,7 @@
 
 import shutil
 import subprocess
+import sys
 import time
 
 import h5py
@@ -216,6 +217,18 @@ def test_tables_are_cut_to_the_rows_of_all_columns(twin):
         file["tessera/history/RF1[X1]"].resize(3, axis=0)
     history = Job(twin).history
     assert {len(column) for column in history.values()} == {3}
+
+
+def test_locked_file_is_read_after_a_while(twin):
+    holder = (
+        "import h5py, sys; f = h5py.File(sys.argv[1], 'r+'); print('open', flush=True); input()"
+    )
+    command = [sys.executable, "-c", holder, str(twin)]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, **pipes) as process:
+        assert process.stdout.readline() == "open\n"
+        assert Series(twin).n_steps == 5
+        process.communicate("\n")
 
 
 # --- a run that is going on ----------------------------------------------------------------------
