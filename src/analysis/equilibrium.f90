@@ -39,7 +39,7 @@ module mpm_equilibrium
     integer  :: max_backtracks = 8    !! halvings of one correction
     logical  :: eigenvalues = .false. !! look for extreme eigenvalues of the tangent in the end
     logical  :: prediction = .true.   !! start from the last increment where that is near
-    real(dp) :: max_stretch = 1.0_dp  !! largest |ln(principal stretch)| in one increment [-]
+    real(dp) :: max_stretch = 2.0_dp  !! largest |ln(principal stretch)| in one increment [-]
   end type newton_settings_t
 
   !> What Newton's method did in one attempt at an increment.

@@ -83,7 +83,7 @@ contains
                                             range=">= 0", default="8", &
                                             meaning="halvings of one correction"))
     call add_parameter(schema, value_rule_t("MAX STRETCH", value_real, required=.false., &
-                                            range="> 0", default="1.0", &
+                                            range="> 0", default="2.0", &
                                             meaning="logarithmic stretch in one increment"))
     call add_parameter(schema, value_rule_t("PREDICTION", value_choice, required=.false., &
                                             choices="ON|OFF", default="ON", &

@@ -94,9 +94,6 @@ contains
     text = "step "//integer_text(state%step)//" increment "//integer_text(state%increment) &
            //" attempt "//integer_text(state%attempt)//", time "//real_text(state%time)//", size " &
            //real_text(state%size)
-    if (report%predicted) text = text//", start predicted"
-    if (report%n_given_up > 0) text = text//line_end//"  prediction given up after " &
-      & //integer_text(report%n_given_up)//" iterations"
     if (allocated(report%residual)) then
       do i = 0, ubound(report%residual, 1)
         text = text//line_end//iteration_text(report, i)
@@ -105,9 +102,20 @@ contains
     text = text//line_end//"  "//outcome_text(report%outcome)//" after " &
            //integer_text(report%n_iterations)//" iterations"
     if (report%outcome /= outcome_converged) text = text//worst_text(report)
-    text = text//eigenvalues_text(report)
+    text = text//start_text(report)//eigenvalues_text(report)
     if (state%n_ghost_pairs >= 0) text = text//line_end//ghost_text(state, report)
   end function attempt_text
+
+  !> Where an attempt started, unless at rest.
+  pure function start_text(report) result(text)
+    type(newton_report_t), intent(in) :: report !! of the attempt
+    character(:), allocatable :: text
+
+    text = ""
+    if (report%predicted) text = line_end//"  started from the last increment"
+    if (report%n_given_up > 0) text = line_end//"  start from the last increment given up after " &
+      & //integer_text(report%n_given_up)//" iterations"
+  end function start_text
 
   !> Pairs of the ghost penalty, and what it carries in an increment that converged.
   pure function ghost_text(state, report) result(text)

@@ -40,5 +40,8 @@ def mass_ratio(job):
 
 
 def cuts(job):
-    """Attempts that failed."""
-    return float(job.iterations["attempt"].max() - 1)
+    """Attempts that failed, over the whole run."""
+    table = job.iterations
+    increment = np.stack([table["step"], table["increment"]], axis=1)
+    attempt = np.column_stack([increment, table["attempt"]])
+    return float(len(np.unique(attempt, axis=0)) - len(np.unique(increment, axis=0)))
