@@ -93,7 +93,8 @@ contains
                      "Holds the displacement gradients of elements at the edge of the body "// &
                      "together.")
     call add_parameter(schema, value_rule_t("GAMMA", value_real, required=.false., range="> 0", &
-                                            default="5e-4", meaning="factor of the penalty"))
+                                            default="5e-4", &
+                                            meaning="factor; without, it may be raised"))
   end subroutine add_ghost_penalty
 
   !> *MATERIAL, *DENSITY and *ELASTIC.
