@@ -112,8 +112,8 @@ contains
     call make_error(error, exit_lost_point, "error: "//integer_text(location%n_lost)// &
                     " material points left the mesh, the first is point "// &
                     integer_text(body%points%id(location%first_lost))//" at ("// &
-                    place_text(body%points%x(:, location%first_lost))//"): expected a mesh that "// &
-                    "reaches further, or *LOST POINTS, ACTION=FREEZE or REMOVE"// &
+                    place_text(body%points%x(:, location%first_lost))//"): expected a mesh "// &
+                    "that reaches further, or *LOST POINTS, ACTION=FREEZE or REMOVE"// &
                     place_of(schedule, model))
   end subroutine report_lost_point
 
@@ -144,8 +144,12 @@ contains
     type(error_t), allocatable :: late
     character(:), allocatable :: place
 
-    if (.not. any(error%code == [exit_model, exit_no_convergence, exit_solver, exit_lost_point])) return
-    call gather_evidence(failure%evidence, body, system, report)
+    select case (error%code)
+    case (exit_model, exit_no_convergence, exit_solver, exit_lost_point)
+      call gather_evidence(failure%evidence, body, system, report)
+    case default
+      return
+    end select
     place = place_of_failure(failure%evidence, body%mesh, body%points)
     ! An increment that had converged has no worst place: the message names its own.
     if (error%code == exit_model .and. report%outcome == outcome_converged) place = ""

@@ -16,6 +16,7 @@ from tessera_post.units import Units
 FORMULATIONS = {"standard": "standard MPM", "fbar": "F-bar patch"}
 SUFFIX = ".vtkhdf"
 MESH_SUFFIX = "_mesh.vtkhdf"
+FAIL_SUFFIX = "_fail.vtkhdf"
 SAME_TIME = 1e-9  # relative to the length of the run
 
 
@@ -35,6 +36,11 @@ class Job:
         if "tessera" not in self.points.file:
             self.close()
             raise PostError(f"'{path}' is no result of Tessera: it has no group /tessera")
+        if "message" in self.points.file["tessera"]:
+            message = self.points.file["tessera/message"][()].decode(errors="replace")
+            what = "holds the attempt that ended a run, for ParaView"
+            self.close()
+            raise PostError(f"'{path}' {what}: {message.splitlines()[0]}")
 
     def close(self) -> None:
         """Closes the files."""
@@ -165,7 +171,7 @@ class Job:
                 f" {self.n_increments}, time {when:g}"
             )
         elif self.is_unfinished:
-            why = f": {self.log.messages[-1]}" if self.log.messages else ""
+            why = f": {self.log.messages[-1].splitlines()[0]}" if self.log.messages else ""
             notes.append(f"'{self.name}' ended early with exit code {self.log.exit_code}{why}")
         return notes
 
@@ -292,7 +298,7 @@ def nearby(path: Path) -> str:
     names = sorted(
         other.name.removesuffix(SUFFIX)
         for other in path.parent.glob(f"*{SUFFIX}")
-        if not other.name.endswith(MESH_SUFFIX)
+        if not other.name.endswith((MESH_SUFFIX, FAIL_SUFFIX))
     )
     return f"; jobs there: {one_of(names)}" if names else ""
 

@@ -8,6 +8,7 @@ ATTEMPT = re.compile(
     r"step (?P<step>\d+) increment (?P<increment>\d+) attempt (?P<attempt>\d+),"
     r" time (?P<time>\S+), size (?P<size>\S+)"
 )
+DETAIL = re.compile(r"  (worst place|likely cause|last attempt): ")  # below a message
 VERDICT = re.compile(
     r"EXPECT (?P<place>.+?:\d+) (?P<what>.+?) at (?P<time>\S+): (?P<kind>analytic|frozen)"
     r" (?P<value>\S+) \+- (?P<tolerance>\S+), (?P<found>.*): (?P<verdict>met|FAILED)"
@@ -140,6 +141,8 @@ def parse_attempts(lines: list[str]) -> tuple[list[Attempt], list[str]]:
             head = found
         elif head is None and attempts and line.strip() and not line.startswith(" "):
             messages.append(line)
+        elif head is None and messages and DETAIL.match(line):
+            messages[-1] += f"\n{line}"
         elif head is not None and line.startswith("  ") and " iteration " not in f" {line.strip()}":
             attempts.append(make_attempt(head, line.strip()))
             head = None

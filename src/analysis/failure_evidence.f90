@@ -13,9 +13,9 @@ module mpm_failure_evidence
   public :: failure_evidence_t, convergence_ratio, fill_fractions, free_residual, gather_evidence
 
   real(dp), parameter :: nearly_empty = 0.05_dp   !! filled fraction below this is suspicious [-]
-  real(dp), parameter :: quadratic_below = 1.0e-3_dp !! residual from which Newton should be fast [-]
+  real(dp), parameter :: quadratic_below = 1.0e-3_dp !! residual from which it falls fast [-]
   real(dp), parameter :: slow = 0.1_dp            !! ratio of residuals that is not quadratic [-]
-  real(dp), parameter :: steady = 5.0_dp          !! largest ratio over smallest that is one rate [-]
+  real(dp), parameter :: steady = 5.0_dp          !! largest over smallest ratio of one rate [-]
   integer, parameter  :: n_ratios = 3             !! ratios that must be alike
 
   !> Where an attempt failed and what speaks for which cause. Indices, not labels; 0 = none.
@@ -181,8 +181,8 @@ contains
     end do
   end function fill_fractions
 
-  !> Ratio r_(k+1)/r_k of the last residuals when they are small and yet fall at one slow rate, which
-  !! quadratic convergence does not. Source: theory.md, section 7.
+  !> Ratio r_(k+1)/r_k of the last residuals when they are small and yet fall at one slow rate, as
+  !! quadratic convergence never does. Source: theory.md, section 7.
   pure real(dp) function convergence_ratio(residual) result(ratio)
     real(dp), intent(in) :: residual(:) !! relative, one per iteration [-]
     real(dp) :: ratios(n_ratios)

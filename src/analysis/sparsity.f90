@@ -4,7 +4,7 @@
 !! the nodes of its active elements. Pairs of elements of the ghost penalty are further blocks, each
 !! over the nodes of its two elements; they are numbered after the patches.
 module mpm_sparsity
-  use mpm_csc_matrix, only: csc_matrix_t
+  use mpm_csc_matrix, only: allocate_entries, csc_matrix_t
   use mpm_dof_map, only: dof_map_t
   use mpm_kinds, only: dp, ip
   use mpm_mesh, only: mesh_t
@@ -244,7 +244,7 @@ contains
     type(lists_t), intent(in) :: neighbours   !! neighbours of each node
     type(dof_map_t), intent(in) :: dofs       !! equation numbers
     integer, allocatable :: n_free(:)
-    integer :: b, i, j, k, column, status
+    integer :: b, i, j, k, column
     integer(ip) :: n
 
     n_free = count(dofs%id > 0, dim=1)
@@ -257,10 +257,8 @@ contains
         if (column > 0) matrix%col_ptr(column) = matrix%col_ptr(column - 1) + n
       end do
     end do
-    matrix%nnz = matrix%col_ptr(dofs%n)
-    allocate (matrix%row(0:matrix%nnz - 1_ip), stat=status)
-    if (status == 0) allocate (matrix%val(0:matrix%nnz - 1_ip), source=0.0_dp, stat=status)
-    if (status /= 0) return
+    call allocate_entries(matrix)
+    if (.not. allocated(matrix%val)) return
     n = 0_ip
     do b = 1, size(n_free)
       do j = 1, n_free(b)
@@ -283,9 +281,10 @@ contains
     type(lists_t), intent(in) :: blocks_of_node !! blocks of each node
     type(dof_map_t), intent(in) :: dofs          !! equation numbers
     integer, allocatable :: offset(:, :)
+    character(80) :: reason
     integer :: b, k, block, status
 
-    allocate (map%position(map%position_first(map%n_block + 1) - 1_ip), stat=status)
+    allocate (map%position(map%position_first(map%n_block + 1) - 1_ip), stat=status, errmsg=reason)
     if (status /= 0) return
     allocate (offset(size(dofs%id, 1), size(dofs%id, 2)), source=-1)
     do b = 1, size(dofs%id, 2)

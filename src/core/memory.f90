@@ -37,10 +37,10 @@ contains
   end function has_room
 
   !> Bytes in whole megabytes, at least one.
-  pure real(dp) function megabytes(n_bytes)
+  pure real(dp) function megabytes(n_bytes) result(amount)
     real(dp), intent(in) :: n_bytes !! [bytes]
 
-    megabytes = max(1.0_dp, anint(n_bytes/1.0e6_dp))
+    amount = max(1.0_dp, anint(n_bytes/1.0e6_dp))
   end function megabytes
 
 end module mpm_memory

@@ -70,9 +70,23 @@ contains
     if (len(modes) > 0) text = text//line_end//bullet//modes
     if (evidence%outcome == outcome_converged .or. evidence%outcome == outcome_memory) return
     if (evidence%empty_element > 0) text = text//line_end//bullet//empty_text(evidence, body)
-    if (evidence%limit_load) text = text//line_end//bullet//"load control has met a limit load: "// &
-      "expected loads below it, or a prescribed displacement in place of the load"
+    if (evidence%limit_load) text = text//line_end//bullet//"load control has met a limit "// &
+      "load: expected loads below it, or a prescribed displacement in place of the load"
     if (is_too_large(evidence)) text = text//line_end//bullet//size_text(evidence, schedule)
+    text = text//newton_text(evidence, report, model, schedule)
+    if (len(text) == 0) text = line_end//bullet//"none of those looked for (free modes, "// &
+      "nearly empty elements, size of the increment, rate of convergence)"
+  end function causes_text
+
+  !> Causes that Newton's method shows.
+  pure function newton_text(evidence, report, model, schedule) result(text)
+    type(failure_evidence_t), intent(in) :: evidence
+    type(newton_report_t), intent(in) :: report   !! of the last attempt
+    type(model_t), intent(in)         :: model    !! controls of the step
+    type(schedule_t), intent(in)      :: schedule !! number of the step
+    character(:), allocatable :: text
+
+    text = ""
     if (evidence%ratio > 0.0_dp) text = text//line_end//bullet//"the tangent is not quadratic: "// &
       "the last residuals fell only to "//real_text(evidence%ratio)//" of the one before"// &
       ", as they do where points change between elastic and plastic"
@@ -81,9 +95,7 @@ contains
                       model%step(schedule%step)%newton%tolerance)
     if (evidence%outcome == outcome_not_finite) text = text//line_end//bullet// &
       "numbers beyond the range of the machine: expected moderate stiffnesses and loads"
-    if (len(text) == 0) text = line_end//"  likely cause: none of those looked for (free modes, "// &
-      "nearly empty elements, size of the increment, rate of convergence)"
-  end function causes_text
+  end function newton_text
 
   !> Whether the way in which the attempt failed speaks for an increment that is too large.
   pure logical function is_too_large(evidence) result(too_large)
@@ -158,8 +170,8 @@ contains
       call find_free_modes(modes, element, mesh, points, constraint, model%frames)
       if (element > 0) then
         text = "the body of element "//integer_text(element_label(mesh, element))// &
-               " is free to move ("//modes//"): expected *BOUNDARY conditions that hold it where "// &
-               "it is now"
+               " is free to move ("//modes//"): expected *BOUNDARY conditions that hold it "// &
+               "where it is now"
         advice = suggest_support(element, mesh, points, constraint, model%frames)
         if (len(advice) > 0) text = text//", such as "//advice
         return

@@ -57,9 +57,9 @@ contains
     end do
   end function held_directions
 
-  !> Data lines of *BOUNDARY that would hold a body which is free, with node sets of the mesh: "X0, 1,
-  !! 1 and Y0, 2, 2". Each line takes away as many free modes as a line can; of equal ones a plane
-  !! that it fixes along its normal. Empty if the sets of the mesh cannot hold the body.
+  !> Data lines of *BOUNDARY that would hold a body which is free, with node sets of the mesh:
+  !! "X0, 1, 1 and Y0, 2, 2". Each line takes away as many free modes as a line can; of equal ones
+  !! it is one of a plane that it fixes along its normal. Empty if the sets cannot hold the body.
   pure function suggest_support(element, mesh, points, constraint, frames) result(advice)
     integer, intent(in) :: element                   !! of the body
     type(mesh_t), intent(in) :: mesh                 !! where it is
@@ -138,30 +138,18 @@ contains
     type(points_t), intent(in) :: points             !! in this mesh
     type(constraint_t), intent(in) :: constraint(:)  !! in force in the step
     type(nodal_frames_t), intent(in) :: frames       !! axes of the nodes
-    integer, allocatable :: part(:), part_of_node(:)
+    integer, allocatable :: part(:)
     logical, allocatable :: fixed(:, :), shared(:), member(:)
-    integer :: e, i
+    integer :: i
 
     modes = ""
     element = 0
     node = 0
     call label_parts(part, mesh, points)
-    allocate (part_of_node(mesh%n_node), source=0)
-    allocate (shared(mesh%n_node), member(mesh%n_node), source=.false.)
-    do e = 1, mesh%n_el
-      if (part(e) == 0) cycle
-      associate (corner => mesh%node(:, e))
-        shared(corner) = shared(corner) .or. (part_of_node(corner) > 0 .and. &
-                                              part_of_node(corner) /= part(e))
-        part_of_node(corner) = part(e)
-      end associate
-    end do
+    shared = are_shared(mesh, part)
     fixed = held_directions(mesh, constraint) .or. spread(shared, 1, mesh%n_dim)
     do i = 1, maxval([0, part])
-      member = .false.
-      do e = 1, mesh%n_el
-        if (part(e) == i) member(mesh%node(:, e)) = .true.
-      end do
+      member = are_of_part(mesh, part, i)
       if (.not. any(member .and. shared)) cycle
       modes = free_modes(mesh, fixed, frames, member)
       if (len(modes) == 0) cycle
@@ -170,6 +158,40 @@ contains
       return
     end do
   end subroutine find_hinge
+
+  !> Nodes of elements of more than one part.
+  pure function are_shared(mesh, part) result(shared)
+    type(mesh_t), intent(in) :: mesh !! connectivity
+    integer, intent(in) :: part(:)   !! (n_el) 0 without points
+    logical :: shared(mesh%n_node)
+    integer :: part_of_node(mesh%n_node)
+    integer :: e
+
+    shared = .false.
+    part_of_node = 0
+    do e = 1, mesh%n_el
+      if (part(e) == 0) cycle
+      associate (node => mesh%node(:, e))
+        shared(node) = shared(node) .or. &
+                       (part_of_node(node) > 0 .and. part_of_node(node) /= part(e))
+        part_of_node(node) = part(e)
+      end associate
+    end do
+  end function are_shared
+
+  !> Nodes of the elements of a part.
+  pure function are_of_part(mesh, part, i) result(member)
+    type(mesh_t), intent(in) :: mesh !! connectivity
+    integer, intent(in) :: part(:)   !! (n_el) 0 without points
+    integer, intent(in) :: i         !! the part
+    logical :: member(mesh%n_node)
+    integer :: e
+
+    member = .false.
+    do e = 1, mesh%n_el
+      if (part(e) == i) member(mesh%node(:, e)) = .true.
+    end do
+  end function are_of_part
 
   !> Numbers the parts of elements with points that hang together by faces.
   pure subroutine label_parts(part, mesh, points)

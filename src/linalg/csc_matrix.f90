@@ -3,7 +3,7 @@ module mpm_csc_matrix
   use mpm_kinds, only: dp, ip
   implicit none
   private
-  public :: csc_matrix_t, add_block, find_entry, multiply, to_dense, zero_values
+  public :: csc_matrix_t, add_block, allocate_entries, find_entry, multiply, to_dense, zero_values
 
   !> A square matrix in compressed columns. Bounds and contents of the index arrays start at
   !! zero, so that they go to UMFPACK without a copy; rows ascend within a column.
@@ -16,6 +16,20 @@ module mpm_csc_matrix
   end type csc_matrix_t
 
 contains
+
+  !> Makes room for the entries that col_ptr counts, with values zero. Too little memory leaves val
+  !! unallocated.
+  pure subroutine allocate_entries(matrix)
+    type(csc_matrix_t), intent(inout) :: matrix !! n and col_ptr are set
+    character(80) :: reason
+    integer :: status
+
+    matrix%nnz = matrix%col_ptr(matrix%n)
+    allocate (matrix%row(0:matrix%nnz - 1_ip), stat=status, errmsg=reason)
+    if (status /= 0) return
+    allocate (matrix%val(0:matrix%nnz - 1_ip), source=0.0_dp, stat=status, errmsg=reason)
+    if (status /= 0) return
+  end subroutine allocate_entries
 
   !> Sets every stored entry to zero and keeps the pattern.
   pure subroutine zero_values(matrix)

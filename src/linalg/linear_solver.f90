@@ -8,9 +8,9 @@ module mpm_linear_solver
   use mpm_openblas_binding, only: dtrsm, openblas_set_num_threads
   use mpm_umfpack_binding, only: control_ordering, control_refinements, control_strategy, &
     info_peak_estimate, info_rcond, info_unit, ordering_cholmod, status_ok, &
-    status_ordering_failed, status_out_of_memory, strategy_symmetric, system_a, umfpack_control, umfpack_dl_defaults, &
-    umfpack_dl_free_numeric, umfpack_dl_free_symbolic, umfpack_dl_numeric, umfpack_dl_solve, &
-    umfpack_dl_symbolic, umfpack_info
+    status_ordering_failed, status_out_of_memory, strategy_symmetric, system_a, &
+    umfpack_control, umfpack_dl_defaults, umfpack_dl_free_numeric, umfpack_dl_free_symbolic, &
+    umfpack_dl_numeric, umfpack_dl_solve, umfpack_dl_symbolic, umfpack_info
   implicit none
   private
   public :: linear_solver_t, analyse, factorize, solve, free_solver

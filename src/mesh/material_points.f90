@@ -99,10 +99,12 @@ contains
     integer, intent(in) :: n                         !! points
     integer, intent(in) :: n_dim                     !! 2 or 3
     type(error_t), allocatable, intent(out) :: error !! exit_solver
+    integer(ip) :: n_bytes
 
-    if (has_room(3_ip*bytes_of_points(n, n_dim))) return
+    n_bytes = 3_ip*bytes_of_points(n, n_dim)
+    if (has_room(n_bytes)) return
     call make_error(error, exit_solver, "not enough memory for "//integer_text(n)// &
-      " material points, about "//real_text(megabytes(3.0_dp*real(bytes_of_points(n, n_dim), dp)))// &
+      " material points, about "//real_text(megabytes(real(n_bytes, dp)))// &
       " MB are needed: expected fewer points per element, or fewer elements with points")
   end subroutine check_memory
 

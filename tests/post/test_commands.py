@@ -88,6 +88,27 @@ def test_what_is_no_job_gets_one_line(post, tmp_path, command, kind):
     assert not list(tmp_path.glob("out*"))
 
 
+@pytest.fixture(scope="module")
+def stuck(run_deck, tmp_path_factory):
+    """The bar, with too few iterations to converge."""
+    deck = bar_deck().replace("*BOUNDARY", "*CONTROLS, MAX ITERATIONS=2\n*BOUNDARY", 1)
+    deck = deck.replace("0.25, 1.0", "0.25, 1.0, 0.1")
+    return run_deck(tmp_path_factory.mktemp("stuck"), deck, code=4)
+
+
+@pytest.mark.parametrize("command", OF_JOBS)
+def test_file_of_a_failed_attempt_says_what_it_is(post, stuck, tmp_path, command):
+    path = stuck.with_name(f"{stuck.name.removesuffix('.vtkhdf')}_fail.vtkhdf")
+    code, out, err = post(*arguments(command, path, tmp_path / "out"))
+    assert (code, out) == (2, "")
+    assert err.startswith(
+        f"tessera-post: error: '{path}' holds the attempt that ended a run, for ParaView: error: no"
+        " convergence at the smallest increment 0.1: too many iterations"
+    )
+    assert err.count("\n") == 1
+    assert not list(tmp_path.glob("out*"))
+
+
 @pytest.mark.parametrize("command", OF_JOBS)
 def test_unknown_job_is_told_with_those_nearby(post, bar, tmp_path, command):
     path = bar.with_name("baz")

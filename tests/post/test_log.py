@@ -71,7 +71,11 @@ def test_failed_attempts_and_the_message_at_the_end_are_told(stuck):
     assert log.attempts[1].attempt == 2
     assert log.attempts[1].size < first.size
     assert len(log.messages) == 1
-    assert log.messages[0].startswith("error: no convergence at the smallest increment 0.1: ")
+    told = log.messages[0].splitlines()
+    assert told[0].startswith("error: no convergence at the smallest increment 0.1: ")
+    assert told[1].startswith("  worst place: node ")
+    assert any(line.startswith("  likely cause: MAX ITERATIONS=2 ") for line in told)
+    assert told[-1].startswith("  last attempt: ")
     assert log.exit_code == 4
 
 
