@@ -13,6 +13,7 @@ from conftest import ROOT
 
 JOB = "disturbed"  # also what paths of its files contain
 FILES = (f"{JOB}.vtkhdf", f"{JOB}_mesh.vtkhdf")
+RESTARTS = (f"{JOB}.restart.h5", f"{JOB}.restart.1.h5")  # the last one, and the one before
 
 # A bar of 4 x 1 with 96 points, pulled by 0.4, in eight increments unless others are asked for.
 # Points that leave the mesh leave the file, so that their number changes.
@@ -42,6 +43,7 @@ X1, 1, 1, 0.4
 RF, U
 *OUTPUT, FIELD, FREQUENCY=1
 S, PEEQ, U, ELEMENT
+*RESTART, WRITE, FREQUENCY=2
 *END STEP
 """
 N_STEPS = 9  # outputs of eight increments
@@ -107,13 +109,28 @@ class SmallRun:
             check=False,
         )
 
+    def go_on(self):
+        """Goes on from the last restart file that is there; None without one."""
+        there = [name for name in RESTARTS if (self.folder / name).exists()]
+        if not there:
+            return None
+        return subprocess.run(
+            [str(self.program), "-q", "--restart", there[0], f"{JOB}.inp"],
+            cwd=self.folder,
+            env=environment(self.library),
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+
     def start(self):
         """Starts the run without faults."""
         return subprocess.Popen(self.command, cwd=self.folder, env=environment(self.library))
 
     def clear(self):
         """Removes the results; what a kill has left under other names stays."""
-        for name in (*FILES, f"{JOB}.log", f"{JOB}.sta", f"{JOB}_history.csv"):
+        for name in (*FILES, *RESTARTS, f"{JOB}.log", f"{JOB}.sta", f"{JOB}_history.csv"):
             (self.folder / name).unlink(missing_ok=True)
 
     @property
@@ -186,3 +203,14 @@ def check_tables(found, path):
         assert len(rows) == 1, (path, table)
     assert len(found["tessera/ledger/time"]) == len(found["tessera/history/time"]), path
     return len(found["tessera/ledger/time"]) - 1
+
+
+def check_whole(run, whole):
+    """Whether a run has written what the undisturbed run has written."""
+    for name, found, expected in zip(FILES, run.results, whole.results):
+        assert check_part(found, expected, name) == N_STEPS
+    assert check_tables(run.results[0], FILES[0]) == N_STEPS - 1
+    history = f"{JOB}_history.csv"
+    assert complete_lines(run.folder / history) == complete_lines(whole.folder / history)
+    assert n_converged(run.folder) == N_STEPS - 1
+    assert not list(run.folder.glob("*.former"))

@@ -1,4 +1,5 @@
-"""SIGKILL at any moment: every result file stays readable up to the last accepted increment.
+"""SIGKILL at any moment: every result file stays readable up to the last accepted increment, and
+the run can go on from its restart file.
 
 TESSERA_KILLS is the number of moments, 50 by default. The run prints how many it survived.
 """
@@ -13,12 +14,12 @@ import pyvista
 from small_runs import (
     FILES,
     JOB,
-    N_STEPS,
     Disturbance,
     SmallRun,
     build_faults,
     check_part,
     check_tables,
+    check_whole,
     complete_lines,
     contents,
     n_converged,
@@ -77,6 +78,17 @@ def check_remains(folder, whole, expected, draw):
                 reader.Update()
 
 
+def check_restart(killed, whole):
+    """Goes on from the restart file if there is one: the results are those of a whole run."""
+    process = killed.go_on()
+    if process is None:
+        assert n_converged(killed.folder) <= 2
+        return False
+    assert (process.returncode, process.stderr) == (0, "")
+    check_whole(killed, whole)
+    return True
+
+
 def test_killed_run_leaves_whole_files(tessera, library, tmp_path):
     """Kills before, in the middle of and after calls that write, and a few at random times."""
     whole = SmallRun(tessera, library, tmp_path / "whole")
@@ -86,7 +98,7 @@ def test_killed_run_leaves_whole_files(tessera, library, tmp_path):
     expected = whole.results
     killed = SmallRun(tessera, library, tmp_path / "killed")
     moments = random.Random(SEED)
-    survived = 0
+    survived = went_on = 0
     for i in range(N_KILLS):
         killed.clear()
         if i % 10 == 9:
@@ -99,8 +111,11 @@ def test_killed_run_leaves_whole_files(tessera, library, tmp_path):
             fault = Disturbance(do, moments.randrange(1, whole.n_calls + 1))
             assert killed.run(fault).returncode == SIGKILLED, fault
         check_remains(killed.folder, whole.folder, expected, draw=i % 10 == 0)
+        if i % 3 == 0:
+            went_on += check_restart(killed, whole)
         survived += 1
-    print(f"kills tried {N_KILLS}, survived {survived}")
+    print(f"kills tried {N_KILLS}, survived {survived}, gone on from {went_on}")
+    assert went_on > N_KILLS // 10
     killed.clear()
     assert killed.run().returncode == 0
     check_remains(killed.folder, whole.folder, expected, draw=False)
@@ -112,11 +127,9 @@ def test_file_system_that_cannot_exchange_names(tessera, library, tmp_path, call
     """The old file gets a second name, or there is a new copy each time; kills spoil nothing."""
     whole = SmallRun(tessera, library, tmp_path / "whole")
     assert whole.run().returncode == 0
-    expected = whole.results
     other = SmallRun(tessera, library, tmp_path / "other")
     result = other.run(Disturbance("22", 1, 1_000_000, calls))
     assert result.returncode == 0, result.stderr
-    for found, wanted, name in zip(other.results, expected, FILES):
-        assert check_part(found, wanted, name) == N_STEPS
+    check_whole(other, whole)
     left = sorted(path.name for path in other.folder.iterdir())
     assert not [name for name in left if name.endswith((".next", ".former"))]
