@@ -34,7 +34,8 @@ def test_full_length_is_scaled_but_never_empty():
 def test_soak_runs_a_deck_and_prints_the_figures(tessera, deck, tmp_path):
     options = ["--exe", tessera, "--deck", deck, "-o", tmp_path / "out"]
     code, out, err = soak("determinism", "--scale", "0.1", *options)
-    assert (code, err) == (0, "")
+    assert code == 0, out + err
+    assert err == "".join(f"determinism: round {i} of 2, checksums 1\n" for i in (1, 2))
     lines = out.splitlines()
     assert lines[0] == "determinism:"
     assert lines[1] == "  runs of bar: 6 (2 with 1 threads, 2 with 2 threads, 2 with 4 threads)"

@@ -3,6 +3,7 @@
 import os
 import shutil
 import subprocess
+import sys
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
@@ -60,9 +61,12 @@ def run_once(settings: Settings, threads: int) -> str:
 def check_determinism(settings: Settings, scale: float) -> Part:
     """Runs of all numbers of threads in turn, so that they meet different neighbours."""
     found: Counter[tuple[int, str]] = Counter()
-    for _ in range(scaled(RUNS, scale)):
+    n = scaled(RUNS, scale)
+    for i in range(n):
         for threads in THREADS:
             found[threads, run_once(settings, threads)] += 1
+        n_checksums = len({text for _, text in found})
+        print(f"determinism: round {i + 1} of {n}, checksums {n_checksums}", file=sys.stderr)
     return judge(settings.deck.stem, found)
 
 
