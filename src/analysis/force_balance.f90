@@ -9,7 +9,7 @@ contains
 
   !> Resultant of all reactions and loads over the sum of their sizes, node by node. It does not
   !! depend on the axes, nor on a part of the forces that is in balance by itself.
-  !! Source: theory.md (15a).
+  !! Source: theory.md (15e).
   pure function force_imbalance(reaction, applied, smallest) result(imbalance)
     real(dp), intent(in) :: reaction(:, :) !! (n_dim, n_node)  along the global axes [force]
     real(dp), intent(in) :: applied(:, :)  !! (n_dim, n_node)  along the global axes [force]

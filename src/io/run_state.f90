@@ -108,7 +108,7 @@ contains
     state%n_constraints = n_active_patches(patches, system%element)
   end subroutine note_constraints
 
-  !> Whether reactions and loads of an increment balance. Source: theory.md (15a).
+  !> Whether reactions and loads of an increment balance. Source: theory.md (15e).
   pure subroutine note_balance(state, system)
     type(run_state_t), intent(inout) :: state !! with reactions and loads; takes the imbalance
     type(system_t), intent(in) :: system      !! solved
