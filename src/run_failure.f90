@@ -1,7 +1,7 @@
 !> What ends a run early, and where in time and space it happened.
 module mpm_run_failure
   use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_memory, outcome_singular, &
-    outcome_text
+    outcome_stretched, outcome_text
   use mpm_error, only: error_t, exit_lost_point, exit_model, exit_no_convergence, exit_solver, &
     make_error
   use mpm_fail_file, only: failure_t, write_fail_file
@@ -54,7 +54,8 @@ contains
     type(schedule_t), intent(in) :: schedule
     type(model_t), intent(in)    :: model
 
-    if (report%outcome /= outcome_converged .or. report%rcond > doubtful_rcond) return
+    if (all(report%outcome /= [outcome_converged, outcome_stretched])) return
+    if (report%rcond > doubtful_rcond) return
     if (maxval(abs(u)) <= maxval(maxval(body%mesh%x, dim=2) - minval(body%mesh%x, dim=2))) return
     if (len(free_modes_text(body, model, schedule%step)) > 0) report%outcome = outcome_singular
   end subroutine refuse_mechanism

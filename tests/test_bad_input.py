@@ -350,9 +350,9 @@ COMMAND_LINES = {
     "no threads": (["a.inp", "--threads"], "--threads needs a value: expected --threads N"),
     "zero threads": (["-t", "0", "a.inp"], "--threads is '0': expected an integer > 0"),
     "many threads": (["-t", "many", "a.inp"], "--threads is 'many': expected an integer > 0"),
-    "one to compare": (
-        ["--compare", "fbar", "a.inp"],
-        "--compare is 'fbar': expected standard,fbar",
+    "twice the same to compare": (
+        ["--compare", "fbar,fbar", "a.inp"],
+        "--compare is 'fbar,fbar': expected standard,fbar or one of them",
     ),
     "flag with value": (["--check=yes", "a.inp"], "--check takes no value, found 'yes'"),
     "wrong schema": (["--schema=xml"], "--schema is 'xml': expected json or markdown"),
@@ -362,7 +362,7 @@ COMMAND_LINES = {
         "--check and --check-tangent: expected one of them",
     ),
     "estimate": (["--estimate", "a.inp"], "--estimate is not available in this version"),
-    "restart": (["--restart", "a.h5", "a.inp"], "--restart is not available in this version"),
+    "no restart file": (["a.inp", "--restart"], "--restart needs a value: expected --restart FILE"),
     "memory": (["--max-memory", "2", "a.inp"], "--max-memory is not available in this version"),
 }
 

@@ -166,13 +166,15 @@ def test_footing_pressure_is_no_checkerboard_with_fbar(footing):
     assert checkerboard(footing["standard"], 1.0) > 50.0 * checkerboard(footing["fbar"], 1.0)
 
 
-def test_footing_takes_20_increments_of_5_to_8_iterations(footing):
+def test_footing_takes_20_increments_of_few_iterations(footing):
+    """At first from rest, then from the last increment, which spares about half of them."""
     attempts = footing["fbar"].newton()
     assert len(attempts) == 20
     assert (footing["fbar"].iterations["attempt"] == 1).all()
     corrections = [residual.size - 1 for residual in attempts]
-    assert min(corrections) >= 5
+    assert corrections[0] >= 5
     assert max(corrections) <= 8
+    assert sum(corrections[10:]) <= 40
 
 
 def test_footing_keeps_all_points(footing):
@@ -182,13 +184,14 @@ def test_footing_keeps_all_points(footing):
         assert (ledger["lost"] == 0).all()
 
 
-def test_newton_is_quadratic_in_last_increment_of_footing(footing):
-    residual = footing["fbar"].newton()[-1]
-    residual = residual[1:]  # the first correction carries the prescribed displacement
-    pairs = [(a, b) for a, b in itertools.pairwise(residual) if 1e-5 < a < 1e-2]
-    assert len(pairs) >= 2, residual
+def test_newton_is_quadratic_in_every_increment_of_footing(footing):
+    pairs = []
+    for residual in footing["fbar"].newton():
+        # The first correction from rest carries the prescribed displacement.
+        pairs += [(a, b) for a, b in itertools.pairwise(residual[1:]) if 1e-5 < a < 1e-3]
+    assert len(pairs) >= 20
     for before, after in pairs:
-        assert after < 100.0 * before**2, residual
+        assert after < 100.0 * before**2, (before, after)
 
 
 # --- stretch -------------------------------------------------------------------------------------

@@ -304,10 +304,10 @@ def test_exhausted_iterations(run_tessera, most):
 def test_exhausted_increments(run_tessera):
     deck = square("0.1, 1, 0.1", "-0.3", ", INC=2")
     start = "error: 2 increments done and the step is not finished: expected fewer, or a larger INC"
-    cause = "the last one had size 0.15, and 0.75 of step time is left"
+    cause = "the last one had size 0.2, and 0.7 of step time is left"
     facts = check_failure(run_tessera(deck, "-q"), 4, start, cause)
     assert (facts["increment"], facts["attempt"]) == (2, 0)
-    assert facts["time"] == pytest.approx(0.25)
+    assert facts["time"] == pytest.approx(0.3)
 
 
 # --- points leave the mesh ---------------------------------------------------------------------
@@ -488,7 +488,7 @@ def test_stale_file_goes_with_the_next_run(run_tessera):
 
 
 def test_file_that_cannot_be_written_is_told(run_tessera, tmp_path):
-    (tmp_path / "job_fail.vtkhdf.tmp").mkdir()
+    (tmp_path / "job_fail.vtkhdf.next").mkdir()
     run = run_tessera(square(push="-12"), "-q")
     assert run.code == 4
     assert "last attempt: job_fail.vtkhdf was not written\nerror: cannot create" in run.stderr
