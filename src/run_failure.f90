@@ -5,7 +5,7 @@ module mpm_run_failure
   use mpm_error, only: error_t, exit_lost_point, exit_model, exit_no_convergence, exit_solver, &
     make_error
   use mpm_fail_file, only: failure_t, write_fail_file
-  use mpm_failure_evidence, only: gather_evidence
+  use mpm_failure_evidence, only: failure_evidence_t, gather_evidence
   use mpm_failure_text, only: causes_text, count_cause, free_modes_text, place_of_failure
   use mpm_increments, only: cut_back, schedule_t
   use mpm_kinds, only: dp
@@ -142,6 +142,7 @@ contains
     type(schedule_t), intent(in)      :: schedule
     type(model_t), intent(in)         :: model
     type(failure_t) :: failure
+    type(failure_evidence_t) :: nowhere
     type(error_t), allocatable :: late
     character(:), allocatable :: place
 
@@ -151,9 +152,10 @@ contains
     case default
       return
     end select
+    ! An increment that had converged has no worst place but a lost point: the message names its own.
+    if (report%outcome == outcome_converged .and. report%worst_point == 0 .and. &
+        any(error%code == [exit_model, exit_lost_point])) failure%evidence = nowhere
     place = place_of_failure(failure%evidence, body%mesh, body%points)
-    ! An increment that had converged has no worst place: the message names its own.
-    if (error%code == exit_model .and. report%outcome == outcome_converged) place = ""
     if (len(place) > 0) error%message = error%message//line_end//"  worst place: "//place
     if (error%code == exit_no_convergence .and. report%outcome == outcome_converged) then
       error%message = error%message//count_cause(schedule)

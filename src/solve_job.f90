@@ -215,7 +215,8 @@ contains
       call find_active(system, body%points)
       call locate_surface_points(body%surface, body%mesh, system%active)
       call note_location(state, schedule, location)
-      analysis%report%worst_point = location%first_lost
+      analysis%report%worst_point = merge(location%first_lost, 0, &
+                                          model%location%lost_action == lost_is_error)
       if (output%metered) call note_checkerboard(state, body)
       call write_increment(output, model, body%mesh, body%points, state, error)
       if (allocated(error)) return

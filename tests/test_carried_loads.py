@@ -170,3 +170,4 @@ def test_load_that_loses_the_body_is_an_error(run_tessera):
         "material points nearer than its own size (step 'STEP-1', increment 2, attempt 1, "
         "step time 0.5)"
     )
+    assert "worst place" not in run.stderr
