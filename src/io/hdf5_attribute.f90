@@ -87,30 +87,44 @@ contains
     integer, intent(out) :: status                   !! < 0: no text of fixed length
     character(kind=c_char), allocatable, target :: letters(:)
     type(c_ptr) :: address
-    integer(hid_t)  :: text_type, type_id
-    integer(size_t) :: length
-    integer :: i, ignored
-    logical :: is_variable
+    integer(hid_t) :: type_id
+    integer :: i, ignored, length
 
-    call h5aget_type_f(attribute, type_id, status)
-    if (status < 0) return
-    call h5tis_variable_str_f(type_id, is_variable, status)
-    if (status >= 0) call h5tget_size_f(type_id, length, status)
-    if (status >= 0 .and. (is_variable .or. length > longest_text)) status = -1
-    call h5tclose_f(type_id, ignored)
+    call find_length(attribute, length, status)
     if (status < 0) return
     allocate (letters(length))
     letters = achar(0)
-    call make_text_type(text_type, size(letters), h5t_cset_ascii_f, status)
+    call make_text_type(type_id, length, h5t_cset_ascii_f, status)
     if (status < 0) return
     address = c_loc(letters)
-    call h5aread_f(attribute, text_type, address, status)
-    call h5tclose_f(text_type, ignored)
+    call h5aread_f(attribute, type_id, address, status)
+    call h5tclose_f(type_id, ignored)
     if (status < 0) return
-    do i = 1, size(letters)
+    do i = 1, length
       if (letters(i) /= achar(0)) text = text//letters(i)
     end do
   end subroutine read_letters
+
+  !> Length of the text of an attribute.
+  subroutine find_length(attribute, length, status)
+    integer(hid_t), intent(in) :: attribute !! open
+    integer, intent(out) :: length          !! bytes
+    integer, intent(out) :: status          !! < 0: no text of fixed length, or a long one
+    integer(hid_t)  :: type_id
+    integer(size_t) :: n_bytes
+    integer :: ignored
+    logical :: is_variable
+
+    length = 0
+    call h5aget_type_f(attribute, type_id, status)
+    if (status < 0) return
+    call h5tis_variable_str_f(type_id, is_variable, status)
+    if (status >= 0) call h5tget_size_f(type_id, n_bytes, status)
+    call h5tclose_f(type_id, ignored)
+    if (status < 0) return
+    if (is_variable .or. n_bytes > longest_text) status = -1
+    if (status >= 0) length = int(n_bytes)
+  end subroutine find_length
 
   !> Writes integers as an attribute: a scalar if there is one. An attribute of that name and
   !! shape is overwritten.

@@ -26,8 +26,8 @@ module mpm_hdf5_copy
     end function h5_chunk_size
 
     !> Reads a chunk as it is stored.
-    function h5_read_chunk(dataset, transfer, offset, filters, bytes) bind(c, name="H5Dread_chunk") &
-      result(status)
+    function h5_read_chunk(dataset, transfer, offset, filters, bytes) &
+      bind(c, name="H5Dread_chunk") result(status)
       import :: c_int, c_int32_t, c_int64_t
       implicit none
       integer(c_int64_t), value :: dataset, transfer
@@ -103,12 +103,13 @@ contains
     integer(c_int64_t), allocatable :: bytes(:)
     integer(c_int64_t) :: n_bytes, offset(2)
     integer(c_int32_t) :: filters
+    character(80) :: reason
     integer :: problem
 
     offset = [int(first, c_int64_t), 0_c_int64_t] ! in the order of C
     status = int(h5_chunk_size(from, offset, n_bytes))
     if (status < 0 .or. n_bytes == 0_c_int64_t) return
-    allocate (bytes((n_bytes + 7_c_int64_t)/8_c_int64_t), stat=problem)
+    allocate (bytes((n_bytes + 7_c_int64_t)/8_c_int64_t), stat=problem, errmsg=reason)
     if (problem /= 0) then
       status = -1
       return

@@ -222,22 +222,26 @@ contains
   subroutine close_hdf5_file(file, error)
     type(hdf5_file_t), intent(inout) :: file           !! closed
     type(error_t), allocatable, intent(inout) :: error !! exit_file
-    type(error_t), allocatable :: failure
-    logical :: kept
     integer :: ignored
 
     if (.not. file%is_open) return
-    if (.not. allocated(error) .and. .not. file%has_failed) then
-      if (file%has_news) call hand_over(file, kept, error)
-      if (.not. allocated(error)) call sync_file(file%path, failure)
-      if (allocated(failure)) call move_alloc(failure, error)
-    end if
+    if (.not. allocated(error) .and. .not. file%has_failed) call publish_last(file, error)
     file%is_open = .false.
     if (file%id >= 0_hid_t) call h5fclose_f(file%id, ignored)
     file%id = -1_hid_t
     file%dataset%id = -1_hid_t
     call remove_file(file%path//suffix)
   end subroutine close_hdf5_file
+
+  !> Publishes what is new and brings the file to the disk.
+  subroutine publish_last(file, error)
+    type(hdf5_file_t), intent(inout) :: file           !! open
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+    logical :: kept
+
+    if (file%has_news) call hand_over(file, kept, error)
+    if (.not. allocated(error)) call sync_file(file%path, error)
+  end subroutine publish_last
 
   !> Sets an error after an earlier failure, which may have been forgotten.
   pure subroutine check_writable(file, error)

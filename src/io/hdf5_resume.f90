@@ -113,7 +113,8 @@ contains
     if (.not. alike) return
     call find_chunks(first, rank(1), chunk(:, 1), n_filters(1), status(1))
     call find_chunks(second, rank(1), chunk(:, 2), n_filters(2), status(2))
-    alike = all(status >= 0) .and. all(chunk(:, 1) == chunk(:, 2)) .and. n_filters(1) == n_filters(2)
+    alike = all(status >= 0) .and. all(chunk(:, 1) == chunk(:, 2)) .and. &
+            n_filters(1) == n_filters(2)
     if (.not. alike) return
     call h5dget_type_f(first, type_id(1), status(1))
     call h5dget_type_f(second, type_id(2), status(2))

@@ -125,15 +125,16 @@ contains
     character(*), intent(in) :: text                    !! of the whole mark
     integer, intent(inout) :: at                        !! start of the line; of the next on return
     character(:), allocatable :: line
+    character(80) :: reason
     integer :: n, status
 
     call next_line(line, text, at)
     n = 0
-    read (line, *, iostat=status) n
+    read (line, *, iostat=status, iomsg=reason) n
     if (status /= 0 .or. n < 0 .or. n > most_numbers) n = 0
     allocate (numbers(n))
     if (n == 0) return
-    read (line, *, iostat=status) n, numbers
+    read (line, *, iostat=status, iomsg=reason) n, numbers
     if (status /= 0) numbers = [integer(ip) ::]
   end subroutine next_numbers
 

@@ -130,16 +130,42 @@ contains
     character(*), intent(in) :: path                 !! file
     type(text_mark_t), intent(in) :: mark            !! where it stood
     type(error_t), allocatable, intent(out) :: error !! exit_file
-    character(block_size) :: block
-    character(200) :: reason
-    integer(ip) :: checksum, left, n_there
-    integer :: n, status, unit
+    character(200) :: problem, reason
+    integer(ip) :: checksum
+    integer :: closed, status, unit
 
     open (newunit=unit, file=path, access="stream", form="unformatted", status="old", &
           action="read", iostat=status, iomsg=reason)
-    if (status == 0) inquire (unit=unit, size=n_there, iostat=status, iomsg=reason)
+    if (status == 0) then
+      call sum_up(unit, mark%n_bytes, checksum, status, reason)
+      close (unit, iostat=closed, iomsg=problem)
+      if (status == 0 .and. closed /= 0) then
+        status = closed
+        reason = problem
+      else if (status == 0 .and. checksum /= mark%checksum) then
+        status = -1
+        reason = "its first lines are not those that were written"
+      end if
+    end if
+    if (status == 0) return
+    call make_error(error, exit_file, "error: cannot go on with '"//path//"': "//trim(reason) &
+                    //": expected the file of the interrupted run, or another folder (-o DIR)")
+  end subroutine check_text_file
+
+  !> Checksum of the first bytes of a file.
+  subroutine sum_up(unit, n_bytes, checksum, status, reason)
+    integer, intent(in) :: unit             !! open at its first byte
+    integer(ip), intent(in) :: n_bytes      !! how many
+    integer(ip), intent(out) :: checksum    !! see mpm_checksum
+    integer, intent(out) :: status          !! not 0: failed, or fewer bytes
+    character(200), intent(inout) :: reason !! of a failure
+    character(block_size) :: block
+    integer(ip) :: left, n_there
+    integer :: n
+
     checksum = 0_ip
-    left = mark%n_bytes
+    left = n_bytes
+    inquire (unit=unit, size=n_there, iostat=status, iomsg=reason)
     if (status == 0 .and. n_there < left) then
       status = -1
       reason = "it is shorter than it was"
@@ -147,19 +173,11 @@ contains
     do while (status == 0 .and. left > 0_ip)
       n = int(min(left, int(block_size, ip)))
       read (unit, iostat=status, iomsg=reason) block(:n)
+      if (status /= 0) exit
       checksum = checksum_of_text(checksum, block(:n))
       left = left - n
     end do
-    if (status == 0 .and. checksum /= mark%checksum) then
-      status = -1
-      reason = "its first lines are not those that were written"
-    end if
-    if (status /= 0) then
-      call make_error(error, exit_file, "error: cannot go on with '"//path//"': "//trim(reason) &
-                      //": expected the file of the interrupted run, or another folder (-o DIR)")
-    end if
-    close (unit, iostat=status)
-  end subroutine check_text_file
+  end subroutine sum_up
 
   !> Opens a file to go on behind a mark; what is behind it is lost.
   subroutine resume_text_file(file, path, mark, error)
