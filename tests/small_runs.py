@@ -109,7 +109,7 @@ class SmallRun:
             check=False,
         )
 
-    def go_on(self):
+    def go_on(self, fault=None):
         """Goes on from the last restart file that is there; None without one."""
         there = [name for name in RESTARTS if (self.folder / name).exists()]
         if not there:
@@ -117,7 +117,7 @@ class SmallRun:
         return subprocess.run(
             [str(self.program), "-q", "--restart", there[0], f"{JOB}.inp"],
             cwd=self.folder,
-            env=environment(self.library),
+            env=environment(self.library, fault, self.folder / "calls"),
             capture_output=True,
             text=True,
             timeout=120,

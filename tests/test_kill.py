@@ -122,6 +122,26 @@ def test_killed_run_leaves_whole_files(tessera, library, tmp_path):
     assert not list(killed.folder.glob("*.next"))
 
 
+def test_killed_restart_can_be_gone_on_from(tessera, library, tmp_path):
+    """A run that goes on from a restart file is killed as well, mostly while it takes over the
+    files of the first one, and goes on once more."""
+    whole = SmallRun(tessera, library, tmp_path / "whole")
+    assert whole.run().returncode == 0
+    moments = random.Random(SEED)
+    run = SmallRun(tessera, library, tmp_path / "run")
+    for _ in range(8):
+        run.clear()
+        first = Disturbance(
+            "kill-half", moments.randrange(whole.n_calls // 2, whole.n_calls * 9 // 10)
+        )
+        assert run.run(first).returncode == SIGKILLED, first
+        for _ in range(2):
+            do = moments.choice(("kill-before", "kill-half", "kill-after"))
+            second = Disturbance(do, moments.randrange(1, 300))
+            assert run.go_on(second).returncode == SIGKILLED, (first, second)
+        assert check_restart(run, whole)
+
+
 @pytest.mark.parametrize("calls", ["exchange", "exchange,link"])
 def test_file_system_that_cannot_exchange_names(tessera, library, tmp_path, calls):
     """The old file gets a second name, or there is a new copy each time; kills spoil nothing."""
