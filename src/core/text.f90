@@ -42,7 +42,8 @@ contains
   pure logical function same_name(a, b)
     character(*), intent(in) :: a, b !! names as written
 
-    same_name = to_upper(a) == to_upper(b)
+    same_name = len_trim(a) == len_trim(b)
+    if (same_name) same_name = to_upper(a) == to_upper(b)
   end function same_name
 
   !> Canonical form of a keyword or parameter name: upper case, every run of blanks, `_` and `-`

@@ -136,7 +136,7 @@ contains
     type(place_t), intent(in) :: place              !! where it is defined
     character(*), intent(in)  :: name               !! as written
     type(definition_t), allocatable :: longer(:)
-    integer :: n
+    integer :: i, n
 
     if (.not. allocated(context%definition)) allocate (context%definition(0))
     if (find_name(context, kind, name) > 0) then
@@ -146,7 +146,12 @@ contains
     end if
     n = size(context%definition)
     allocate (longer(n + 1))
-    longer(:n) = context%definition
+    do i = 1, n
+      longer(i)%kind = context%definition(i)%kind
+      longer(i)%card = context%definition(i)%card
+      longer(i)%used = context%definition(i)%used
+      call move_alloc(context%definition(i)%name, longer(i)%name)
+    end do
     longer(n + 1) = definition_t(kind, place%card, name)
     call move_alloc(longer, context%definition)
   end subroutine define_name

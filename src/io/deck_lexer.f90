@@ -1,7 +1,7 @@
 !> From the bytes of a file to logical lines with tokens: comments, quotes, continuation.
 module mpm_deck_lexer
   use mpm_deck_card, only: append_field, deck_field_t, deck_line_t
-  use mpm_diagnostics, only: diagnostics_t, error_at_place
+  use mpm_diagnostics, only: diagnostics_t, error_at_place, too_many_errors
   use mpm_input_file, only: load_input
   use mpm_kinds, only: ip
   use mpm_source_excerpt, only: source_place_t
@@ -89,10 +89,17 @@ contains
     begin = 0
     content = 0
     last = 0
+    if (too_many_errors(diag)) source%next = len(source%text) + 1
     do while (source%next <= len(source%text))
+      if (source%text(source%next:source%next) == new_line("a")) then
+        source%next = source%next + 1
+        source%number = source%number + 1
+        cycle
+      end if
       if (continued .and. begins_with_star(source%text(source%next:))) exit
       call advance(source)
       call check_characters(source, usable, diag)
+      if (too_many_errors(diag)) source%next = len(source%text) + 1
       if (.not. usable) cycle
       is_text = as_text .and. .not. continued &
                 .and. .not. begins_with_star(source%text(source%first:source%last))

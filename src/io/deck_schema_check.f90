@@ -1,12 +1,13 @@
 !> The cards of a deck against the schema: known, at the right place, complete.
 module mpm_deck_schema_check
-  use mpm_deck_card, only: deck_t, parameter_text
+  use mpm_deck_card, only: deck_t, parameter_index, parameter_text
   use mpm_deck_schema, only: find_keyword, keyword_hint
   use mpm_deck_schema_lines, only: check_lines
   use mpm_deck_schema_parameters, only: check_card_parameters
   use mpm_deck_schema_rule, only: in_both, in_model, in_step, keyword_rule_t, once_in_deck, &
     once_in_scope, once_never, schema_t, value_new_name
-  use mpm_diagnostics, only: diagnostics_t, error_at_keyword, error_at_parameter, quoted
+  use mpm_diagnostics, only: diagnostics_t, error_at_keyword, error_at_parameter, quoted, &
+    too_many_errors
   use mpm_text, only: integer_text, same_name
   implicit none
   private
@@ -30,6 +31,7 @@ contains
     integer :: i, i_rule
 
     do i = 1, size(deck%card)
+      if (too_many_errors(diag)) return
       i_rule = find_keyword(schema, deck%card(i)%keyword)
       if (i_rule == 0) then
         call refuse_keyword(schema, deck, i, diag)
@@ -215,7 +217,7 @@ contains
     integer, intent(in)                :: i_card !! card of the deck
     type(diagnostics_t), intent(inout) :: diag   !! gets the error
     character(:), allocatable :: name, parameter
-    integer :: i
+    integer :: i, j
 
     if (rule%n_parameters == 0) return
     if (rule%parameter(1)%kind /= value_new_name) return
@@ -224,7 +226,10 @@ contains
     if (len(name) == 0) return
     do i = 1, i_card - 1
       if (deck%card(i)%keyword /= rule%keyword) cycle
-      if (.not. same_name(parameter_text(deck%card(i), parameter, ""), name)) cycle
+      j = parameter_index(deck%card(i), parameter)
+      if (j == 0) cycle
+      if (len(deck%card(i)%parameter(j)%value) /= len(name)) cycle
+      if (.not. same_name(deck%card(i)%parameter(j)%value, name)) cycle
       call error_at_parameter(diag, deck, i_card, parameter, "*"//trim(rule%keyword)//" "// &
                               quoted(name)//" is defined already in line "// &
                               integer_text(deck%card(i)%head%number)//": expected a new name")

@@ -10,9 +10,10 @@ module mpm_diagnostics
   public :: diagnostics_t, quoted
   public :: error_at_keyword, error_at_parameter, error_at_field, error_at_place, error_in_file
   public :: warning_at_keyword, warning_at_parameter, warning_at_field
-  public :: place_in_line, to_error, warnings_text
+  public :: place_in_line, to_error, too_many_errors, warnings_text
 
   integer, parameter :: max_kept = 200     !! messages kept; further ones are only counted
+  integer, parameter :: max_errors = 1000  !! errors after which the reading of a deck stops
 
   !> One message.
   type :: diagnostic_t
@@ -227,6 +228,10 @@ contains
     type(diagnostic_t) :: new
     integer :: i, at
 
+    if (diag%n == max_kept) then
+      call count_message(diag, is_error)
+      return
+    end if
     new%rank = place%rank
     new%line = place%line
     new%column = place%first
@@ -239,15 +244,29 @@ contains
       if (diag%message(i)%text == new%text) return
       if (comes_before(new, diag%message(i)) .and. at == i + 1) at = i
     end do
-    if (is_error) diag%n_errors = diag%n_errors + 1
-    if (.not. is_error) diag%n_warnings = diag%n_warnings + 1
-    if (diag%n == max_kept) return
+    call count_message(diag, is_error)
     do i = diag%n, at, -1
       diag%message(i + 1) = diag%message(i)
     end do
     diag%message(at) = new
     diag%n = diag%n + 1
   end subroutine add_message
+
+  !> Counts a message.
+  pure subroutine count_message(diag, is_error)
+    type(diagnostics_t), intent(inout) :: diag !! one message more
+    logical, intent(in) :: is_error            !! .false.: a warning
+
+    if (is_error) diag%n_errors = diag%n_errors + 1
+    if (.not. is_error) diag%n_warnings = diag%n_warnings + 1
+  end subroutine count_message
+
+  !> Whether there are so many errors that reading on helps nobody.
+  pure logical function too_many_errors(diag)
+    type(diagnostics_t), intent(in) :: diag !! messages so far
+
+    too_many_errors = diag%n_errors > max_errors
+  end function too_many_errors
 
   !> Whether a message stands before another: by file, line and column.
   pure logical function comes_before(a, b)

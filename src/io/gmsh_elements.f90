@@ -39,7 +39,7 @@ contains
       end if
       call note_block(raw, i, type_dimension(raw%el_type(i)), physical)
     end do
-    raw%block = raw%block(:count(raw%block%first > 0))
+    raw%block = raw%block(:raw%n_block)
     call check_elements(raw, scanner)
   end subroutine read_elements_22
 
@@ -49,20 +49,16 @@ contains
     integer, intent(in) :: i                !! element
     integer, intent(in) :: dim              !! its dimension
     integer, intent(in) :: physical         !! its group, 0 if none
-    type(gmsh_block_t), allocatable :: longer(:)
-    integer :: n
 
-    n = count(raw%block%first > 0)
-    if (n > 0) then
-      if (raw%block(n)%dim == dim .and. raw%block(n)%tag == physical) return
-    end if
-    if (n == size(raw%block)) then
-      allocate (longer(2*n + 8))
-      longer(:n) = raw%block
-      call move_alloc(longer, raw%block)
-    end if
-    raw%block(n + 1) = gmsh_block_t(dim, physical, i)
-    raw%block(n + 1)%group = pack([physical], [physical > 0])
+    associate (n => raw%n_block)
+      if (n > 0) then
+        if (raw%block(n)%dim == dim .and. raw%block(n)%tag == physical) return
+      end if
+      n = n + 1
+      call grow_blocks(raw%block, n, raw%n_el)
+      raw%block(n) = gmsh_block_t(dim, physical, i)
+      raw%block(n)%group = pack([physical], [physical > 0])
+    end associate
   end subroutine note_block
 
   !> $Elements (4.1): blocks of elements of one entity and type.

@@ -6,10 +6,11 @@ module mpm_gmsh_mesh
   implicit none
   private
   public :: gmsh_mesh_t, gmsh_group_t, gmsh_block_t
-  public :: first_storage, grow, grow_blocks, grown_size
+  public :: first_storage, max_groups, grow, grow_blocks, grown_size
   public :: type_dimension, type_nodes, type_order, type_name, max_nodes
 
   integer, parameter :: max_nodes = 10 !! nodes of the largest known element
+  integer, parameter :: max_groups = 2000    !! physical groups of a mesh
   integer, parameter :: first_storage = 1024 !! items before storage grows
 
   !> A physical group: several elements under one name.
@@ -34,6 +35,7 @@ module mpm_gmsh_mesh
     type(gmsh_group_t), allocatable :: group(:)  !! named groups first
     type(gmsh_block_t), allocatable :: entity(:) !! 4.1: $Entities; `first` unused
     type(gmsh_block_t), allocatable :: block(:)  !! runs of elements, in order
+    integer :: n_block = 0                 !! runs in use while the elements are read
     integer :: n_node = 0
     integer, allocatable  :: node_tag(:)   !! (n_node)
     integer, allocatable  :: node_line(:)  !! (n_node)     line in the file

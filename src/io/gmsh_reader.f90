@@ -1,8 +1,8 @@
 !> Reads a gmsh mesh of simplices, formats 2.2 and 4.1 ASCII; physical groups become sets.
 module mpm_gmsh_reader
   use mpm_diagnostics, only: diagnostics_t, error_in_file
-  use mpm_gmsh_mesh, only: gmsh_group_t, gmsh_mesh_t, type_dimension, type_name, type_nodes, &
-    & type_order
+  use mpm_gmsh_mesh, only: gmsh_group_t, gmsh_mesh_t, max_groups, type_dimension, &
+    & type_name, type_nodes, type_order
   use mpm_gmsh_scanner, only: fail_at_line, failed, gmsh_scanner_t, line_text, load_text
   use mpm_gmsh_sections, only: read_sections
   use mpm_mesh, only: index_set_t
@@ -54,7 +54,8 @@ contains
     call check_carriers(parent, raw, map, scanner)
     if (failed(scanner)) return
     call fill_mesh(parent, raw, map)
-    call add_unnamed_groups(raw)
+    call add_unnamed_groups(raw, scanner)
+    if (failed(scanner)) return
     call fill_sets(parent, raw, map)
   end subroutine convert
 
@@ -209,8 +210,9 @@ contains
   end subroutine fill_mesh
 
   !> Groups without a name get one: POINT_4, CURVE_3, SURFACE_2, VOLUME_1.
-  subroutine add_unnamed_groups(raw)
-    type(gmsh_mesh_t), intent(inout) :: raw !! groups are added
+  subroutine add_unnamed_groups(raw, scanner)
+    type(gmsh_mesh_t), intent(inout) :: raw        !! groups are added
+    type(gmsh_scanner_t), intent(inout) :: scanner !! takes the failure
     character(7), parameter :: kind(0:3) = ["POINT  ", "CURVE  ", "SURFACE", "VOLUME "]
     integer :: i_block, i, dim, tag
 
@@ -219,6 +221,11 @@ contains
       do i = 1, size(raw%block(i_block)%group)
         tag = raw%block(i_block)%group(i)
         if (any(raw%group%dim == dim .and. raw%group%tag == tag)) cycle
+        if (size(raw%group) >= max_groups) then
+          call fail_at_line(scanner, 0, "too many physical groups: expected at most " &
+                            //integer_text(max_groups))
+          return
+        end if
         raw%group = [raw%group, gmsh_group_t(dim, tag, trim(kind(dim))//"_"//integer_text(tag))]
       end do
     end do

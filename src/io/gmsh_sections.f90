@@ -1,7 +1,8 @@
 !> The sections of a gmsh file, formats 2.2 and 4.1 in ASCII.
 module mpm_gmsh_sections
   use mpm_gmsh_elements, only: read_elements_22, read_elements_41
-  use mpm_gmsh_mesh, only: gmsh_block_t, gmsh_group_t, gmsh_mesh_t, grow_blocks
+  use mpm_gmsh_mesh, only: gmsh_block_t, gmsh_group_t, gmsh_mesh_t, grow_blocks, &
+    & max_groups
   use mpm_gmsh_nodes, only: read_nodes_22, read_nodes_41
   use mpm_gmsh_scanner, only: end_line, fail_at_line, fail_at_token, failed, gmsh_scanner_t, &
     & next_count, next_integer, next_line, next_real, next_word, read_count, rest_of_line
@@ -165,7 +166,10 @@ contains
     integer :: n, i
 
     call read_count(scanner, n, "the number of physical names")
+    if (n > max_groups) call fail_at_line(scanner, scanner%line, integer_text(n) &
+      & //" physical names: expected at most "//integer_text(max_groups))
     do i = 1, n
+      if (failed(scanner)) return
       call next_line(scanner, "physical name "//integer_text(i)//" of "//integer_text(n))
       call next_integer(scanner, group%dim, "the dimension of a physical group")
       call next_integer(scanner, group%tag, "the number of a physical group")

@@ -14,6 +14,9 @@ module mpm_input_deck
   public :: read_deck
 
   integer, parameter :: max_depth = 10 !! files that include each other
+  integer, parameter :: max_files = 1000 !! files of a deck
+  integer, parameter :: max_cards = 5000 !! keywords of a deck
+  integer, parameter :: max_fields = 1000 !! parameters of a keyword line, and their values
 
   !> Where the reading stands.
   type :: reader_t
@@ -145,12 +148,17 @@ contains
     type(deck_card_t) :: card
     integer :: i_rule
 
+    call cut_keyword_line(line, deck, diag)
     call make_card(card, line)
     if (card%keyword == "INCLUDE") then
       call include_file(reader, deck, source, card, diag)
       return
     end if
     call finish_card(reader, deck)
+    if (reader%n_cards == max_cards) then
+      call refuse_more_cards(reader, deck, source, card, diag)
+      return
+    end if
     i_rule = find_keyword(reader%schema, card%keyword)
     reader%is_text = .false.
     if (i_rule > 0) reader%is_text = reader%schema%keyword(i_rule)%is_text
@@ -158,6 +166,37 @@ contains
     reader%has_card = .true.
     reader%n_data = 0
   end subroutine read_keyword
+
+  !> Leaves only the keyword of a line that goes on and on.
+  pure subroutine cut_keyword_line(line, deck, diag)
+    type(deck_line_t), intent(inout)   :: line !! keyword line
+    type(deck_t), intent(in)           :: deck !! names the files
+    type(diagnostics_t), intent(inout) :: diag !! gets the error
+
+    if (size(line%field) <= max_fields) return
+    associate (field => line%field(max_fields + 1))
+      call error_at_place(diag, place_in_line(deck, line, field%first, field%last), &
+                          "more than "//integer_text(max_fields)// &
+                          " fields in a keyword line: expected fewer")
+    end associate
+    line%field = line%field(:1)
+  end subroutine cut_keyword_line
+
+  !> Stops the reading of a file at a keyword that is one too many.
+  subroutine refuse_more_cards(reader, deck, source, card, diag)
+    type(reader_t), intent(inout)      :: reader !! without a card
+    type(deck_t), intent(in)           :: deck   !! names the files
+    type(source_file_t), intent(inout) :: source !! the file of the keyword, at its end on return
+    type(deck_card_t), intent(in)      :: card   !! of the keyword
+    type(diagnostics_t), intent(inout) :: diag   !! gets the error
+
+    associate (field => card%head%field(1))
+      call error_at_place(diag, place_in_line(deck, card%head, field%first, field%last), &
+                          "more than "//integer_text(max_cards)//" keywords: expected fewer")
+    end associate
+    reader%is_text = .false.
+    source%next = len(source%text) + 1
+  end subroutine refuse_more_cards
 
   !> Makes a card of a keyword line.
   pure subroutine make_card(card, line)
@@ -248,6 +287,11 @@ contains
     if (reader%depth == max_depth) then
       call error_at_keyword(diag, deck, i_card, "more than "//integer_text(max_depth)// &
                             " files include each other: expected fewer")
+      return
+    end if
+    if (size(deck%file) == max_files) then
+      call error_at_keyword(diag, deck, i_card, "more than "//integer_text(max_files)// &
+                            " files in a deck: expected fewer")
       return
     end if
     do i = 1, reader%depth

@@ -32,6 +32,8 @@ contains
       case ("MATERIAL")
         n = n + 1
         material(n)%name = parameter_text(deck%card(i), "NAME", "")
+        ! Never unallocated: a copy of the material would look at bounds that were never set.
+        allocate (material(n)%yield_stress(0), material(n)%plastic_strain(0))
         call define_name(context, deck, is_material, at_parameter(i, "NAME"), material(n)%name)
         call require_elasticity(deck, context, i)
       case ("DENSITY")
@@ -77,7 +79,8 @@ contains
     associate (card => deck%card(i_card))
       n = size(card%data)
       material%law = law_von_mises
-      allocate (material%yield_stress(n), material%plastic_strain(n), source=0.0_dp)
+      material%yield_stress = spread(0.0_dp, 1, n)
+      material%plastic_strain = spread(0.0_dp, 1, n)
       do i = 1, n
         material%yield_stress(i) = field_real(card%data(i), 1)
         if (field_count(card%data(i)) > 1) material%plastic_strain(i) = field_real(card%data(i), 2)

@@ -2,7 +2,7 @@
 module mpm_step_builder
   use mpm_boundary_builder, only: add_boundary, begin_boundary_step, boundary_state_t, &
     & close_boundary_step, fix_boundary, open_boundary, warn_released
-  use mpm_build_context, only: at_field, build_context_t, fault
+  use mpm_build_context, only: at_card, at_field, build_context_t, fault
   use mpm_deck_card, only: deck_t, field_count, field_real, has_parameter, parameter_choice, &
     & parameter_integer, parameter_real, parameter_text
   use mpm_expectation_builder, only: build_expectation
@@ -17,6 +17,8 @@ module mpm_step_builder
   public :: build_steps
 
   real(dp), parameter :: smallest_part = 1.0e-5_dp !! default minimum over the period
+  real(dp), parameter :: most_outputs = 1.0e5_dp  !! times of TIME INTERVAL in a step
+  real(dp), parameter :: least_part = 1.0e-12_dp   !! least first increment over the period
 
   !> What is in force; it carries over from step to step.
   type :: conditions_t
@@ -96,9 +98,25 @@ contains
       if (step%geostatic) call apply_at_once(step%load)
     end associate
     call build_requests(step, model, deck, context, range, time)
+    call check_interval(step, deck, context)
     time = time + step%schedule%period
     model%step(n) = step
   end subroutine build_step
+
+  !> TIME INTERVAL of *OUTPUT, perhaps of a step before, does not cut the step into dust.
+  subroutine check_interval(step, deck, context)
+    type(step_t), intent(in) :: step                !! with schedule and requests
+    type(deck_t), intent(in) :: deck                !! the deck
+    type(build_context_t), intent(inout) :: context !! takes the error
+
+    associate (interval => step%field_output%time_interval, period => step%schedule%period)
+      if (.not. step%has_field_output .or. interval <= 0.0_dp) return
+      if (period <= most_outputs*interval) return
+      call fault(context, deck, at_card(step%card), "TIME INTERVAL="//real_text(interval) &
+                 //" of *OUTPUT is too short for this step: expected at least " &
+                 //real_text(period/most_outputs))
+    end associate
+  end subroutine check_interval
 
   !> Name, number of increments, and the requests that carry over.
   subroutine open_step(step, model, n, deck, i_card)
@@ -164,6 +182,11 @@ contains
         call fault(context, deck, at_field(i_card, 1, 1), "the first increment " &
                    //real_text(schedule%initial)//" is longer than the step: expected at most " &
                    //real_text(schedule%period))
+      else if (schedule%initial < least_part*schedule%period) then
+        call fault(context, deck, at_field(i_card, 1, 1), "the first increment " &
+                   //real_text(schedule%initial)//" is too short for the step: expected at least " &
+                   //real_text(least_part*schedule%period))
+        return
       else if (schedule%minimum > schedule%initial) then
         call fault(context, deck, at_field(i_card, 1, 3), "the smallest increment " &
                    //real_text(schedule%minimum)//" is larger than the first: expected at most " &

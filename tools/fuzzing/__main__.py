@@ -1,13 +1,14 @@
 """Tries hostile decks, meshes and restart files: see docs/reliability.md."""
 
 import argparse
+import multiprocessing
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 
-from fuzzing.campaign import Campaign  # noqa: E402
+from fuzzing.campaign import Campaign, Figures  # noqa: E402
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -23,6 +24,7 @@ def make_parser() -> argparse.ArgumentParser:
     add("--decks", type=int, default=10000, metavar="N", help="mutations of decks")
     add("--meshes", type=int, default=1000, metavar="N", help="mutations of meshes")
     add("--seed", default="1", metavar="S", help="other mutations for each seed")
+    add("--jobs", type=int, default=1, metavar="N", help="processes at a time")
     add("--no-extremes", action="store_true", help="without the very large files")
     add("--driver", type=Path, default=build / "fuzz_driver", metavar="PATH",
         help="what reads the inputs (default: that of build/sanitize)")  # fmt: skip
@@ -33,15 +35,10 @@ def make_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """The program."""
-    options = make_parser().parse_args(arguments)
-    for path in (options.driver, options.program):
-        if not path.is_file():
-            print(f"fuzz: error: there is no program '{path}': build it first", file=sys.stderr)
-            return 2
+def try_share(options: argparse.Namespace, job: int) -> list[Figures]:
+    """What one of several processes tries."""
     campaign = Campaign(options.driver.resolve(), options.program.resolve(), options.seed,
-                        options.keep)  # fmt: skip
+                        options.keep, (job, options.jobs))  # fmt: skip
     try:
         found = []
         if not options.no_extremes:
@@ -50,6 +47,22 @@ def main(arguments: list[str] | None = None) -> int:
         found.append(campaign.meshes(options.meshes))
     finally:
         campaign.close()
+    return found
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """The program."""
+    options = make_parser().parse_args(arguments)
+    for path in (options.driver, options.program):
+        if not path.is_file():
+            print(f"fuzz: error: there is no program '{path}': build it first", file=sys.stderr)
+            return 2
+    with multiprocessing.Pool(options.jobs) as pool:
+        shares = pool.starmap(try_share, [(options, job) for job in range(options.jobs)])
+    found = shares[0]
+    for share in shares[1:]:
+        for figures, more in zip(found, share):
+            figures.add(more)
     for figures in found:
         print(figures.text())
     return 1 if any(figures.findings for figures in found) else 0

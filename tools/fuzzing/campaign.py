@@ -49,6 +49,18 @@ class Figures:
             self.findings[answer.trouble] += 1
             self.hangs += answer.trouble == "hang"
 
+    def add(self, other: "Figures") -> None:
+        """Takes in the figures of a process that ran beside."""
+        self.tried += other.tried
+        self.findings += other.findings
+        self.hangs += other.hangs
+        self.codes += other.codes
+        self.busy += other.busy
+        self.memory = max(self.memory, other.memory)
+        self.seconds = max(self.seconds, other.seconds)
+        if other.slowest > self.slowest:
+            self.slowest, self.slowest_name = other.slowest, other.slowest_name
+
     def text(self) -> str:
         """The figures in a few lines."""
         codes = ", ".join(f"{code}: {n}" for code, n in sorted(self.codes.items(), key=str))
@@ -68,11 +80,13 @@ class Figures:
 class Campaign:
     """A run of the fuzzer."""
 
-    def __init__(self, driver: Path, program: Path, seed: str, keep: Path) -> None:
+    def __init__(self, driver: Path, program: Path, seed: str, keep: Path, share=(0, 1)) -> None:
+        """`share`: (k, n), every n-th input from number k."""
         self.folder = Path(tempfile.mkdtemp(prefix="tessera-fuzz-", dir=scratch()))
         self.driver = Driver(driver, self.folder)
         self.seed = seed
         self.keep = keep
+        self.share = share
         self.schema = Schema(program)
         make_special_files(self.folder)
         self.seeds = [*shipped(), *tested()]
@@ -125,7 +139,9 @@ class Campaign:
         """The handful of extreme inputs, each alone."""
         figures = Figures("extremes")
         start = time.monotonic()
-        for name, path in hostile_decks(self.folder):
+        for i, (name, path) in enumerate(hostile_decks(self.folder)):
+            if i % self.share[1] != self.share[0]:
+                continue
             request = f"model\t{path.name if path.parent == self.folder else path}"
             self.driver.stop()
             self.driver.send([request])
@@ -137,14 +153,15 @@ class Campaign:
         return figures
 
     def run(self, kind: str, n: int, write: Callable[[int, Path], str]) -> Figures:
-        """Tries inputs 0 .. n-1: the next ones are made while the driver reads the last ones."""
+        """Tries this share of the inputs 0 .. n-1: the next ones are made while the driver reads the last ones."""
         figures = Figures(kind)
         start = time.monotonic()
         waiting: list[tuple[int, Path, str]] = []
-        for first in range(0, n + BATCH, BATCH):
+        numbers = range(self.share[0], n, self.share[1])
+        for first in range(0, len(numbers) + BATCH, BATCH):
             batch = []
-            for i in range(first, min(first + BATCH, n)):
-                slot = self.folder / f"{'ab'[first // BATCH % 2]}{i - first}.inp"
+            for j, i in enumerate(numbers[first : first + BATCH]):
+                slot = self.folder / f"{'ab'[first // BATCH % 2]}{j}.inp"
                 batch.append((i, slot, write(i, slot)))
             if waiting:
                 answers = self.driver.answers([request for _, _, request in waiting])

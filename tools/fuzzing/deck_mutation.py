@@ -26,7 +26,7 @@ class DeckMutator:
     def __init__(self, seeds: list[Seed], schema: Schema) -> None:
         self.seeds = seeds
         self.schema = schema
-        self.weights = list(accumulate(seed.share / seed.cost() for seed in seeds))
+        self.weights = list(accumulate(seed.share / seed.cost() ** 2 for seed in seeds))
         self.on_lines = (
             delete_line, repeat_line, swap_lines, move_card, delete_card, repeat_card,
             self.borrow_card, self.make_card, self.splice, self.rename_keyword, self.add_parameter,

@@ -29,7 +29,7 @@ ENVIRONMENT = {
     "OMP_NUM_THREADS": "1",
     "OPENBLAS_NUM_THREADS": "1",
     "ASAN_OPTIONS": f"detect_leaks=0:hard_rss_limit_mb={LIMIT_MEMORY}:"
-    f"max_allocation_size_mb={LIMIT_MEMORY}:allocator_may_return_null=1:quarantine_size_mb=16:"
+    f"max_allocation_size_mb={LIMIT_MEMORY}:allocator_may_return_null=1:quarantine_size_mb=4:malloc_context_size=1:"
     "detect_stack_use_after_return=0",
     "UBSAN_OPTIONS": "print_stacktrace=1",
 }
