@@ -3,7 +3,7 @@
 !! Every line of standard input is a request, its words separated by tabs:
 !!     model  DECK          deck, model, its text for the log, pattern of the first increment
 !!     run    ARGUMENT...   a whole command line
-!! Each is answered by a line: exit code, characters of the message, 1 if it holds control
+!! Each is answered by a line that begins with "= ": exit code, characters of the message, 1 if it holds control
 !! characters, CPU time in microseconds, largest memory of the process so far in KiB.
 program fuzz_driver
   use, intrinsic :: iso_c_binding, only: c_int, c_long
@@ -51,7 +51,7 @@ program fuzz_driver
       call try_run(code, message, trim(line(5:)))
     end if
     call cpu_time(after)
-    write (output_unit, "(*(i0,1x))") code, len(message), merge(0, 1, is_clean(message)), &
+    write (output_unit, "('= ',*(i0,1x))") code, len(message), merge(0, 1, is_clean(message)), &
       nint(1.0e6_dp*(after - before)), memory()
     flush (output_unit)
   end do

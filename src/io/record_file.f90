@@ -11,7 +11,9 @@ module mpm_record_file
   use mpm_error, only: error_t, exit_file, make_error
   use mpm_file_exchange, only: sync_file
   use mpm_hdf5_failure, only: hdf5_failure
+  use mpm_input_file, only: check_input
   use mpm_kinds, only: ip
+  use mpm_source_excerpt, only: printable
   use mpm_text, only: integer_text, parse_integer
   implicit none
   private
@@ -122,13 +124,16 @@ contains
     character(*), intent(in) :: path                 !! file
     type(error_t), allocatable, intent(out) :: error !! exit_file: none, of another kind, damaged
     character(seal_length) :: seal
+    character(:), allocatable :: reason
     integer(ip) :: checksum, length
     integer :: status, unit, version
     logical :: ok
 
     seal = ""
     inquire (file=path, size=n_bytes)
-    open (newunit=unit, file=path, access="stream", form="unformatted", status="old", &
+    call check_input(path, reason) ! a pipe would let us wait
+    status = len(reason)
+    if (status == 0) open (newunit=unit, file=path, access="stream", form="unformatted", status="old", &
           action="read", iostat=status)
     if (status == 0) then
       read (unit, iostat=status) seal
@@ -175,7 +180,7 @@ contains
     if (first == 0) return
     first = first + len(name) + 2
     length = index(seal(first:), new_line("a")) - 1
-    if (length > 0) value = seal(first:first + min(length, 40) - 1)
+    if (length > 0) value = printable(seal(first:first + min(length, 40) - 1))
   end function property
 
   !> A length as text.

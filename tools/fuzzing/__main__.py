@@ -23,6 +23,7 @@ def make_parser() -> argparse.ArgumentParser:
     add = parser.add_argument
     add("--decks", type=int, default=10000, metavar="N", help="mutations of decks")
     add("--meshes", type=int, default=1000, metavar="N", help="mutations of meshes")
+    add("--restarts", type=int, default=1000, metavar="N", help="mutations of restart files")
     add("--seed", default="1", metavar="S", help="other mutations for each seed")
     add("--jobs", type=int, default=1, metavar="N", help="processes at a time")
     add("--no-extremes", action="store_true", help="without the very large files")
@@ -45,6 +46,7 @@ def try_share(options: argparse.Namespace, job: int) -> list[Figures]:
             found += [campaign.unchanged(), campaign.hostile()]
         found.append(campaign.decks(options.decks))
         found.append(campaign.meshes(options.meshes))
+        found.append(campaign.restarts(options.restarts))
     finally:
         campaign.close()
     return found

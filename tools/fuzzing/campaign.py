@@ -15,6 +15,7 @@ from fuzzing.deck_mutation import DeckMutator
 from fuzzing.driver import Answer, Driver
 from fuzzing.hostile import hostile_decks, make_special_files
 from fuzzing.mesh_mutation import MeshMutator
+from fuzzing.restart_mutation import RestartMutator
 from fuzzing.schema import Schema
 from fuzzing.seeds import ROOT, shipped, tested
 
@@ -87,6 +88,7 @@ class Campaign:
         self.seed = seed
         self.keep = keep
         self.share = share
+        self.program = program
         self.schema = Schema(program)
         make_special_files(self.folder)
         self.seeds = [*shipped(), *tested()]
@@ -134,6 +136,19 @@ class Campaign:
             return f"model\t{slot.name}"
 
         return self.run("meshes", n, write)
+
+    def restarts(self, n: int) -> Figures:
+        """Mutations of a restart file, against the deck that it belongs to."""
+        if n == 0:
+            return Figures("restarts")
+        mutator = RestartMutator(self.program, self.folder)
+
+        def write(i: int, slot: Path) -> str:
+            file = slot.with_suffix(".h5")
+            file.write_bytes(mutator.make(self.random("restart", i)))
+            return f"run\t--check\t-q\t-f\t--restart\t{file.name}\trestart.inp"
+
+        return self.run("restarts", n, write)
 
     def hostile(self) -> Figures:
         """The handful of extreme inputs, each alone."""
@@ -186,7 +201,9 @@ class Campaign:
         name += "-" + hashlib.sha256(answer.trouble.encode()).hexdigest()[:6]
         target = self.keep / name
         target.mkdir(parents=True, exist_ok=True)
-        for path in (slot, slot.with_suffix(".msh")):
+        if kind == "restarts":
+            shutil.copy(slot.with_suffix(".h5"), target / f"{kind}-{i}.h5")
+        for path in (slot, slot.with_suffix(".msh")) if kind != "restarts" else ():
             if path.exists() and (path == slot or kind == "meshes"):
                 text = path.read_bytes().replace(slot.stem.encode() + b".msh", f"{kind}-{i}.msh".encode())
                 (target / f"{kind}-{i}{path.suffix}").write_bytes(text)

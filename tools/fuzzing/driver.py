@@ -129,9 +129,16 @@ class Driver:
             pass
 
     def line(self, patience: float) -> bytes | None:
-        """The next line of the driver; None at its end. TimeoutError when it takes too long."""
+        """The next answer of the driver; None at its end. TimeoutError when it takes too long."""
         until = time.monotonic() + patience
-        while b"\n" not in self.buffer:
+        while True:
+            line, found, rest = self.buffer.partition(b"\n")
+            if found:
+                self.buffer = rest
+                if line.startswith(b"= "):  # the rest is what the program tells its user
+                    self.n_answers += 1
+                    return line[2:]
+                continue
             left = until - time.monotonic()
             if left <= 0 or not select.select([self.process.stdout], [], [], left)[0]:
                 raise TimeoutError
@@ -139,9 +146,6 @@ class Driver:
             if not data:
                 return None
             self.buffer += data
-        line, self.buffer = self.buffer.split(b"\n", 1)
-        self.n_answers += 1
-        return line
 
     def stderr(self) -> str:
         """What the process wrote to stderr so far, the end of it."""
