@@ -38,6 +38,9 @@ module mpm_linear_solver
     integer     :: n_factorizations = 0 !! factorisations so far
   end type linear_solver_t
 
+  !> OpenBLAS has its working memory: it belongs to the process, not to a solver.
+  logical, save :: has_buffer = .false.
+
 contains
 
   !> Orders and analyses the pattern of a matrix. A pattern of structural symmetry is expected;
@@ -54,7 +57,7 @@ contains
     if (matrix%n == 0) return
     ! More BLAS threads would make sums depend on their number and fight with OpenMP.
     call openblas_set_num_threads(1_c_int)
-    call take_blas_buffer(solver%n_analyses == 0, outcome)
+    call take_blas_buffer(outcome)
     if (outcome /= solver_ok) return
     call umfpack_dl_defaults(solver%control)
     solver%control(control_strategy) = real(strategy_symmetric, dp)
@@ -71,13 +74,12 @@ contains
 
   !> Lets OpenBLAS take its working memory as long as there is some: it waits for ever when it needs
   !! it and there is none. It keeps what it has got.
-  subroutine take_blas_buffer(is_first, outcome)
-    logical, intent(in)  :: is_first !! it may not have the memory yet
-    integer, intent(out) :: outcome  !! solver_ok or solver_memory
+  subroutine take_blas_buffer(outcome)
+    integer, intent(out) :: outcome !! solver_ok or solver_memory
     real(c_double) :: a(1, 1), b(1, 1)
 
     outcome = solver_ok
-    if (.not. is_first) return
+    if (has_buffer) return
     if (.not. has_room(blas_buffer)) then
       outcome = solver_memory
       return
@@ -85,6 +87,7 @@ contains
     a = 1.0_c_double
     b = 1.0_c_double
     call dtrsm("L", "U", "N", "N", 1_c_int, 1_c_int, 1.0_c_double, a, 1_c_int, b, 1_c_int)
+    has_buffer = .true.
   end subroutine take_blas_buffer
 
   !> Factorises a matrix whose pattern has been analysed.
