@@ -11,6 +11,7 @@ sh tools/setup.sh post test
 # The program as a whole is tested with checks; what takes long or is timed, in the release build.
 cmake --preset debug -DTESSERA_WERROR=ON
 cmake --build --preset debug
+cmake --build --preset debug --target fuzz_driver
 cmake --preset release
 cmake --build --preset release
 
