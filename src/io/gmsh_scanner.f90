@@ -211,11 +211,10 @@ contains
     type(gmsh_scanner_t), intent(inout) :: scanner !! behind the number
     integer, intent(out)     :: n                  !! count, 0 after a failure
     character(*), intent(in) :: expected           !! what the count is
-    integer, parameter :: least = 2                !! characters of an item
 
     call next_integer(scanner, n, expected)
     if (n < 0) call fail_at_token(scanner, "a count below zero: expected "//expected)
-    if (n > bytes_left(scanner)/least + 1) call fail_at_token(scanner, "the file is too short for this " &
+    if (n > bytes_left(scanner)) call fail_at_token(scanner, "the file is too short for this " &
       & //"count: it was truncated, or the count is wrong: expected "//expected)
     if (failed(scanner)) n = 0
   end subroutine next_count

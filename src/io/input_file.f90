@@ -1,4 +1,5 @@
 !> Reads whole files of the user: no wait for a pipe, no failure of an allocation.
+! allow(assumed-size)
 module mpm_input_file
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_null_char
   use mpm_kinds, only: dp, ip
@@ -65,8 +66,8 @@ contains
     if (len(reason) > 0) return
     if (n_bytes > 0) then
       deallocate (text)
+      allocate (character(n_bytes) :: text, stat=status, errmsg=message)
       message = "not enough memory for its "//real_text(real(n_bytes, dp))//" bytes"
-      allocate (character(n_bytes) :: text, stat=status)
       if (status == 0) read (unit, iostat=status, iomsg=message) text
       if (status /= 0) then
         reason = trim(message)
@@ -105,16 +106,17 @@ contains
   end subroutine open_input
 
   !> Whether something can be opened but has no places to go to: reading it could take for ever.
-  logical function is_stream(path)
+  function is_stream(path) result(is_pipe)
     character(*), intent(in) :: path !! file
+    logical :: is_pipe               !! .true.: a pipe or a device
     integer(c_int) :: descriptor, status
     integer(c_long) :: place
 
-    is_stream = .false.
+    is_pipe = .false.
     descriptor = c_open(trim(path)//c_null_char, without_wait, 0_c_int)
     if (descriptor < 0_c_int) return
     place = c_seek(descriptor, 0_c_long, from_end)
-    is_stream = place < 0_c_long
+    is_pipe = place < 0_c_long
     status = c_close(descriptor)
   end function is_stream
 

@@ -7,6 +7,7 @@ module mpm_step_builder
     & parameter_integer, parameter_real, parameter_text
   use mpm_expectation_builder, only: build_expectation
   use mpm_external_force, only: load_t
+  use mpm_increments, only: schedule_settings_t
   use mpm_kinds, only: dp
   use mpm_load_builder, only: add_loads, begin_load_step, close_load_step, load_state_t
   use mpm_model, only: history_request_t, model_t, step_t
@@ -167,7 +168,6 @@ contains
     type(deck_t), intent(in) :: deck                !! the deck
     type(build_context_t), intent(inout) :: context !! takes errors
     integer, intent(in) :: i_card                   !! *STATIC or *GEOSTATIC
-    real(dp) :: needed
 
     associate (line => deck%card(i_card)%data(1), schedule => step%schedule)
       schedule%direct = has_parameter(deck%card(i_card), "DIRECT")
@@ -178,15 +178,29 @@ contains
       if (schedule%direct) schedule%maximum = schedule%initial
       if (field_count(line) > 2) schedule%minimum = field_real(line, 3)
       if (field_count(line) > 3) schedule%maximum = field_real(line, 4)
-      if (schedule%initial > schedule%period) then
-        call fault(context, deck, at_field(i_card, 1, 1), "the first increment " &
-                   //real_text(schedule%initial)//" is longer than the step: expected at most " &
-                   //real_text(schedule%period))
-      else if (schedule%initial < least_part*schedule%period) then
+      if (schedule%initial < least_part*schedule%period) then
         call fault(context, deck, at_field(i_card, 1, 1), "the first increment " &
                    //real_text(schedule%initial)//" is too short for the step: expected at least " &
                    //real_text(least_part*schedule%period))
         return
+      end if
+      call check_schedule(schedule, deck, context, i_card)
+    end associate
+  end subroutine build_schedule
+
+  !> The numbers of the data line fit each other.
+  subroutine check_schedule(schedule, deck, context, i_card)
+    type(schedule_settings_t), intent(in) :: schedule !! read, the first increment not too short
+    type(deck_t), intent(in) :: deck                  !! the deck
+    type(build_context_t), intent(inout) :: context   !! takes errors
+    integer, intent(in) :: i_card                     !! *STATIC or *GEOSTATIC
+    real(dp) :: needed
+
+    associate (line => deck%card(i_card)%data(1))
+      if (schedule%initial > schedule%period) then
+        call fault(context, deck, at_field(i_card, 1, 1), "the first increment " &
+                   //real_text(schedule%initial)//" is longer than the step: expected at most " &
+                   //real_text(schedule%period))
       else if (schedule%minimum > schedule%initial) then
         call fault(context, deck, at_field(i_card, 1, 3), "the smallest increment " &
                    //real_text(schedule%minimum)//" is larger than the first: expected at most " &
@@ -206,7 +220,7 @@ contains
                    //": expected a larger INC on *STEP")
       end if
     end associate
-  end subroutine build_schedule
+  end subroutine check_schedule
 
   !> *CONTROLS: what it does not name stays as it was in the step before, or with RESET goes back
   !! to its default.

@@ -13,7 +13,7 @@ module mpm_parent_checks
 
   real(dp), parameter :: off_centre = 0.25_dp !! farthest mid-edge node off the middle, in edges
   real(dp), parameter :: flat = 1.0e-14_dp    !! least volume over cubed (2-D: squared) longest edge
-  real(dp), parameter :: shortest = 1.0e-30_dp !! longest edge of an element: below it, squares vanish
+  real(dp), parameter :: shortest = 1.0e-30_dp !! longest edge: below it, squares vanish
 
 contains
 

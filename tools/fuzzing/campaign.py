@@ -168,7 +168,7 @@ class Campaign:
         return figures
 
     def run(self, kind: str, n: int, write: Callable[[int, Path], str]) -> Figures:
-        """Tries this share of the inputs 0 .. n-1: the next ones are made while the driver reads the last ones."""
+        """Tries this share of the inputs 0 .. n-1; the next are made while the driver reads."""
         figures = Figures(kind)
         start = time.monotonic()
         waiting: list[tuple[int, Path, str]] = []
@@ -205,7 +205,9 @@ class Campaign:
             shutil.copy(slot.with_suffix(".h5"), target / f"{kind}-{i}.h5")
         for path in (slot, slot.with_suffix(".msh")) if kind != "restarts" else ():
             if path.exists() and (path == slot or kind == "meshes"):
-                text = path.read_bytes().replace(slot.stem.encode() + b".msh", f"{kind}-{i}.msh".encode())
+                text = path.read_bytes().replace(
+                    slot.stem.encode() + b".msh", f"{kind}-{i}.msh".encode()
+                )
                 (target / f"{kind}-{i}{path.suffix}").write_bytes(text)
         (target / f"{kind}-{i}.txt").write_text(f"{answer.trouble}\n{answer.stderr}")
         print(f"  {kind}:{i} {answer.trouble}", flush=True)
@@ -215,5 +217,3 @@ def scratch() -> Path | None:
     """A folder in memory, if there is one."""
     shared = Path("/dev/shm")
     return shared if shared.is_dir() else None
-
-

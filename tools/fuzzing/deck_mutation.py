@@ -35,7 +35,8 @@ class DeckMutator:
         )  # fmt: skip
         self.in_line = (
             change_number, change_number, nudge_number, nudge_number, nudge_number, change_word,
-            self.choose_word, borrow_word, borrow_word, insert_piece, lengthen, cut_line, comment_out,
+            self.choose_word, borrow_word, borrow_word, insert_piece, lengthen, cut_line,
+            comment_out,
         )  # fmt: skip
         self.on_bytes = (
             flip_byte, insert_bytes, truncate, line_ends, mark, delete_bytes, repeat_bytes,
@@ -235,7 +236,9 @@ def nudge_number(random: Random, line: bytes, _other: bytes) -> bytes:
     if not found:
         return line
     match = random.choice(found)
-    return line[: match.start()] + words.near(random, match[0].decode()).encode() + line[match.end() :]
+    return (
+        line[: match.start()] + words.near(random, match[0].decode()).encode() + line[match.end() :]
+    )
 
 
 def change_word(random: Random, line: bytes, _other: bytes) -> bytes:
@@ -310,7 +313,9 @@ def truncate(random: Random, text: bytes) -> bytes:
 
 def line_ends(random: Random, text: bytes) -> bytes:
     """The line ends of other systems, or all of them at once."""
-    ends = random.choice(((b"\r\n",), (b"\r",), (b"\n", b"\r\n"), (b"\n", b"\r", b"\n\r", b"\r\r\n")))
+    ends = random.choice(
+        ((b"\r\n",), (b"\r",), (b"\n", b"\r\n"), (b"\n", b"\r", b"\n\r", b"\r\r\n"))
+    )
     return b"".join(line + random.choice(ends) for line in text.split(b"\n"))
 
 

@@ -1,5 +1,6 @@
 """The program that reads the inputs, what it answers, and how it may die."""
 
+import contextlib
 import os
 import re
 import select
@@ -17,7 +18,8 @@ PATIENCE = 60.0  # wall time of an input that is tried alone [s]
 
 TROUBLE = re.compile(
     r"AddressSanitizer|runtime error|Fortran runtime error|^At line \d+|Backtrace|Error allocating"
-    r"|Allocation would exceed|SIGSEGV|SIGFPE|SIGABRT|hard rss limit|corrupt|double free|METIS|GKlib",
+    r"|Allocation would exceed|SIGSEGV|SIGFPE|SIGABRT|hard rss limit|corrupt|double free"
+    r"|METIS|GKlib",
     re.MULTILINE,
 )
 FRAME = re.compile(r"#\d+ \S+ in (__\w+_MOD_\w+|\w+) (\S*\.f90:\d+)")
@@ -78,7 +80,7 @@ def signature(stderr: str, otherwise: str) -> str:
     for frame in FRAME.finditer(stderr):
         return f"{kind[1] if kind else otherwise} {Path(frame[2]).name} {frame[1]}"
     line = TROUBLE.search(stderr)
-    return f"{otherwise} {stderr[line.start():].splitlines()[0][:100]}" if line else otherwise
+    return f"{otherwise} {stderr[line.start() :].splitlines()[0][:100]}" if line else otherwise
 
 
 class Driver:
@@ -123,10 +125,8 @@ class Driver:
         if not self.process or self.n_answers > 20000:
             self.stop()
             self.start()
-        try:
+        with contextlib.suppress(BrokenPipeError):
             self.process.stdin.write("".join(line + "\n" for line in requests).encode())
-        except BrokenPipeError:
-            pass
 
     def line(self, patience: float) -> bytes | None:
         """The next answer of the driver; None at its end. TimeoutError when it takes too long."""

@@ -73,10 +73,13 @@ def texts() -> Iterator[tuple[str, bytes]]:
     yield "quote without end", b'*MESH, FILE="' + b"x\n" * 10_000
     for cells in ("1000000000", "10000", "2147483647", "2147483648", "99999999999999999999"):
         yield f"box of {cells} cells each way", generated(cells).encode()
-    yield "list without end", (
-        "*GENERATE, TYPE=BOX, DIMENSION=2\nX,0,1,1\nY,0,1,1\n*NSET, NSET=A, GENERATE\n"
-        "1, 2147483647, 1\n*ELSET, ELSET=B, GENERATE\n1, 2000000000, 1\n" + STEP
-    ).encode()
+    yield (
+        "list without end",
+        (
+            "*GENERATE, TYPE=BOX, DIMENSION=2\nX,0,1,1\nY,0,1,1\n*NSET, NSET=A, GENERATE\n"
+            "1, 2147483647, 1\n*ELSET, ELSET=B, GENERATE\n1, 2000000000, 1\n" + STEP
+        ).encode(),
+    )
 
 
 def generated(cells: str) -> str:
@@ -120,6 +123,7 @@ def meshes() -> Iterator[tuple[str, bytes]]:
     for count in (b"80000000", b"40000000"):
         yield f"mesh of {count.decode()} nodes", head + b"$Nodes\n1 %s 1 1\n" % count + filler
         yield f"mesh of {count.decode()} names", head + b"$PhysicalNames\n%s\n" % count + filler
-        yield f"mesh of {count.decode()} entities", (
-            head + b"$Entities\n%s %s 0 0\n" % (count, count) + filler
+        yield (
+            f"mesh of {count.decode()} entities",
+            (head + b"$Entities\n%s %s 0 0\n" % (count, count) + filler),
         )

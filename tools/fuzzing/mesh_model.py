@@ -136,7 +136,7 @@ def coordinates(model: Model, with_tag: bool) -> list[str]:
     ]
 
 
-# --- mutations of the data: what is written stays well-formed --------------------------------------
+# --- mutations of the data: what is written stays well-formed -------------------------------------
 
 
 def renumber(random: Random, model: Model) -> None:

@@ -106,7 +106,9 @@ def change_dataset(random: Random, file: h5py.File, name: str) -> None:
         return
     del file[name]
     if kind == 2:
-        shape = tuple(random.choice((0, 1, 2, 3, 7, n)) for n in value.shape) or (random.randrange(3),)
+        shape = tuple(random.choice((0, 1, 2, 3, 7, n)) for n in value.shape) or (
+            random.randrange(3),
+        )
         file[name] = np.zeros(shape, value.dtype)
     elif kind == 3:
         other = random.choice((np.int8(1), np.float32(1), np.bytes_(b"x" * 300), "text", 2**62))

@@ -23,7 +23,7 @@ class Seed:
     def cost(self) -> float:
         """About the CPU time of the driver [s]: from what the deck says, not from a clock, so that
         the same decks are chosen everywhere."""
-        cells = {axis: 0 for axis in b"XYZ"}
+        cells = dict.fromkeys(b"XYZ", 0)
         for line in self.lines:
             match = CELLS.match(line)
             if match:

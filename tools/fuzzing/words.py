@@ -34,8 +34,8 @@ TRVEC analytic frozen NEW MOD x y z
 
 PIECES = (
     '"', '""', '"""', "'", ",", ",,", ",,,,,,,,", "=", "==", "*", "**", " ** ", "***", "\t", " ",
-    "_", "-", "--", "*STEP", "*END STEP", "*INCLUDE, INPUT=", "*MESH, FILE=", "/", "\\", "%s%n", "$(x)",
-    "{", ";", ":", "\x1b[31m", "\u00e9", "\u202e", "\ufeff", "\U0001f480", "e\u0301", "",
+    "_", "-", "--", "*STEP", "*END STEP", "*INCLUDE, INPUT=", "*MESH, FILE=", "/", "\\", "%s%n",
+    "$(x)", "{", ";", ":", "\x1b[31m", "\u00e9", "\u202e", "\ufeff", "\U0001f480", "e\u0301", "",
 )  # fmt: skip
 
 BYTES = (
@@ -53,7 +53,7 @@ def number(random: Random) -> str:
     if kind < 0.75:
         return random.choice(NUMBERS)
     if kind < 0.85:
-        return str(random.randint(-(2**random.randint(1, 66)), 2**random.randint(1, 66)))
+        return str(random.randint(-(2 ** random.randint(1, 66)), 2 ** random.randint(1, 66)))
     return repr(random.uniform(-2, 2) * 10 ** random.uniform(-3, 3))
 
 
@@ -72,12 +72,8 @@ def near(random: Random, text: str) -> str:
     kind = random.randrange(9)
     if kind == 0 or not text:
         return number(random)
-    if kind == 1:
-        return "-" + text
-    if kind == 2:
-        return text + random.choice("0e.,-+ d")
-    if kind == 3:
-        return text[:-1]
+    if kind < 4:
+        return ("-" + text, text + random.choice("0e.,-+ d"), text[:-1])[kind - 1]
     try:
         value = float(text)
     except ValueError:
