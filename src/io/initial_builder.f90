@@ -13,6 +13,8 @@ module mpm_initial_builder
   private
   public :: build_initial_stress
 
+  real(dp), parameter :: least_height = 1.0e-30_dp !! that stress can be divided by [length]
+
 contains
 
   !> *INITIAL CONDITIONS, TYPE=STRESS: all lines of all cards.
@@ -60,7 +62,7 @@ contains
         if (model%mesh%n_dim == 2 .and. any(abs(value(6:)) > 0.0_dp)) call fault(context, deck, &
           & at_field(at(1), at(2), merge(6, 7, abs(value(6)) > 0.0_dp)), "shear stress out of " &
           & //"the plane in plane strain: expected s11, s22, s33, s12 and nothing but 0 after them")
-      else if (abs(value(5) - value(3)) <= 0.0_dp) then
+      else if (abs(value(5) - value(3)) <= least_height) then
         call fault(context, deck, at_field(at(1), at(2), 5), "both heights are " &
                    //real_text(value(5))//": expected two different ones")
       else
