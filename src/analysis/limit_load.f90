@@ -39,7 +39,7 @@ contains
     type(system_t), intent(in)        :: system   !! in equilibrium
     type(newton_report_t), intent(in) :: report   !! of the attempt
     type(schedule_t), intent(in)      :: schedule !! the increment is open
-    real(dp) :: load(system%dofs%n), way(system%dofs%n), norm
+    real(dp) :: load(system%dofs%n), way(system%dofs%n), norm, flexibility
     logical :: driven
 
     call gather_free(system%dofs, system%f_ext, load)
@@ -49,11 +49,11 @@ contains
     watch%load = norm
     watch%softness = 0.0_dp
     if (norm <= 0.0_dp) return
-    if (watch%flexibility > 0.0_dp) then
-      if (driven) watch%softness = abs(dot_product(load, way)) &
-                                   /(norm*schedule%size*watch%flexibility)
-    else
-      watch%flexibility = abs(dot_product(load, way))/(norm*schedule%size)
+    flexibility = abs(dot_product(load/norm, way))/schedule%size
+    if (watch%flexibility <= 0.0_dp) then
+      watch%flexibility = flexibility
+    else if (driven) then
+      watch%softness = flexibility/watch%flexibility
     end if
   end subroutine watch_increment
 
@@ -83,12 +83,12 @@ contains
     type(limit_watch_t), intent(in)   :: watch  !! at the last accepted increment
     type(system_t), intent(in)        :: system !! after an attempt
     type(newton_report_t), intent(in) :: report !! of the attempt
-    real(dp) :: load(system%dofs%n), growth
+    real(dp) :: load(system%dofs%n), norm
 
     call gather_free(system%dofs, system%f_ext, load)
-    growth = 1.0_dp - watch%load/max(norm2(load), tiny(1.0_dp))
-    driven = growth > 0.0_dp .and. report%at_rest <= 2.0_dp*growth &
-             .and. all(abs(system%dofs%prescribed) <= 0.0_dp)
+    norm = norm2(load)
+    driven = norm > watch%load .and. all(abs(system%dofs%prescribed) <= 0.0_dp)
+    if (driven) driven = report%at_rest <= 2.0_dp*(1.0_dp - watch%load/norm)
   end function is_driven_by_load
 
 end module mpm_limit_load
