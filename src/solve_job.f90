@@ -70,6 +70,7 @@ contains
     call free_system(analysis%system)
     if (allocated(error)) then
       call keep_last_state(analysis, output, state, model, error%code)
+      analysis%report%at_limit_load = analysis%watch%told
       call record_failure(error, output%paths%failure, analysis%body, analysis%system, &
                           analysis%report, analysis%schedule, model)
     end if

@@ -131,6 +131,7 @@ def test_load_control_tells_the_limit_load_of_the_arch(run_tessera):
     assert NOTE.findall(run.read("job.log")) == notes
     assert float(notes[0]) / 100 * 3 * 0.02 == pytest.approx(0.0246, rel=0.02)
     assert summary(run, "cut-backs") > 2
+    assert "load control has met a limit load" in run.stderr
 
 
 def test_load_control_tells_the_limit_load_of_a_bar(run_tessera):
@@ -143,6 +144,7 @@ def test_load_control_tells_the_limit_load_of_a_bar(run_tessera):
     )
     assert run.code == 4
     assert NOTE.findall(run.stderr) == []  # a quiet run is quiet
+    assert "load control has met a limit load" in run.stderr  # but tells why it ends
     (limit,) = NOTE.findall(run.read("job.log"))
     assert float(limit) == pytest.approx(100 * 20 * 2 / np.sqrt(3) / 40, rel=0.03)
 
@@ -166,6 +168,7 @@ def test_other_failures_are_no_limit_load(run_tessera, deck):
     assert run.code == 4
     assert "no convergence at the smallest increment" in run.stderr
     assert "note" not in run.stderr
+    assert "limit load" not in run.stderr
     assert "note" not in run.read("job.log")
 
 

@@ -56,6 +56,7 @@ module mpm_equilibrium
     integer, allocatable :: flowing(:)     !! (0:n_iterations)  points that flow
     real(dp) :: rcond = 1.0_dp             !! smallest over largest pivot, least one of all factors [-]
     real(dp) :: at_rest = 0.0_dp           !! relative residual without any displacement [-]
+    logical  :: at_limit_load = .false.    !! load control has met a limit load, see mpm_limit_load
     logical  :: predicted = .false.        !! began with the motion of the last increment
     integer  :: n_given_up = 0             !! corrections after a prediction that led nowhere
     real(dp) :: stretch = 0.0_dp           !! largest one of an active element, once in equilibrium [-]

@@ -45,6 +45,7 @@ contains
     type(newton_report_t), intent(in) :: report  !! of the attempt
 
     evidence%outcome = report%outcome
+    evidence%limit_load = report%at_limit_load
     call find_place(evidence, body, system, report)
     call find_empty_element(evidence, body, system)
     if (.not. allocated(report%residual)) return

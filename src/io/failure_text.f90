@@ -1,7 +1,8 @@
 !> Where a run failed and why, in words and in the numbers of the input.
 module mpm_failure_text
   use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_inverted, &
-    outcome_iterations, outcome_material, outcome_memory, outcome_not_finite, outcome_singular
+    outcome_iterations, outcome_material, outcome_memory, outcome_not_finite, outcome_singular, &
+    outcome_stretched
   use mpm_failure_evidence, only: failure_evidence_t
   use mpm_increments, only: schedule_t
   use mpm_kinds, only: dp
@@ -104,7 +105,7 @@ contains
     select case (evidence%outcome)
     case (outcome_singular, outcome_not_finite)
       too_large = .false.
-    case (outcome_inverted, outcome_material)
+    case (outcome_inverted, outcome_material, outcome_stretched)
       too_large = .true.
     case default
       too_large = evidence%overshot
@@ -132,6 +133,8 @@ contains
     select case (evidence%outcome)
     case (outcome_inverted)
       text = text//"an element turned inside out"
+    case (outcome_stretched)
+      text = text//"an element was stretched beyond MAX STRETCH of *CONTROLS"
     case (outcome_material)
       text = text//"a point was strained beyond what its material can follow"
     case default
