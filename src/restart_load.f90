@@ -15,11 +15,14 @@ module mpm_restart_load
   use mpm_restart_file, only: open_restart, read_restart
   use mpm_restart_state, only: restart_t
   use mpm_run_state, only: run_state_t
+  use mpm_source_excerpt, only: printable
   use mpm_text, only: integer_text
   use mpm_verdict_record, only: restore_verdicts
   implicit none
   private
   public :: load_restart, restore_point
+
+  integer, parameter :: most_increments = 1000000000 !! of a step
 
 contains
 
@@ -64,8 +67,9 @@ contains
 
     if (restart%formulation /= formulation) then
       call make_error(error, exit_deck, "error: restart file '"//path//"' is of a run with "// &
-                      "formulation "//restart%formulation//": this run has "//formulation// &
-                      ", expected the same (--compare "//restart%formulation//")")
+                      "formulation "//printable(restart%formulation)//": this run has "// &
+                      formulation//", expected the same (--compare "// &
+                      printable(restart%formulation)//")")
       return
     end if
     call check_signature(deck, restart%deck_signature, restart%schedule%step, error)
@@ -78,7 +82,7 @@ contains
     call check_model(model, restart%model_signature, restart%schedule%step, error)
     if (allocated(error) .or. restart%schedule%step == 0) return
     associate (schedule => restart%schedule, period => model%step(restart%schedule%step)%schedule%period)
-      if (schedule%planned > 0.0_dp .and. schedule%step_time <= period .and. &
+      if (schedule%increment < most_increments .and. schedule%planned > 0.0_dp .and. schedule%step_time <= period .and. &
           (schedule%finished .eqv. schedule%step_time >= period)) return
     end associate
     call make_error(error, exit_file, "error: restart file '"//path//"' does not fit: schedule: "// &
@@ -110,6 +114,7 @@ contains
     end associate
     analysis%system%u_last = state%delta_u
     analysis%u_start = analysis%kept%u_start
+    analysis%watch = analysis%kept%watch
     deallocate (analysis%kept%mesh_x)
     if (inverted > 0) call make_error(error, exit_file, "error: the restart file does not fit: "// &
                                       "mesh_x: expected elements that are not inside out")

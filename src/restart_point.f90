@@ -27,6 +27,7 @@ contains
     analysis%kept%schedule = analysis%schedule
     analysis%kept%state = state
     analysis%kept%u_start = analysis%u_start
+    analysis%kept%watch = analysis%watch
     call note_output(analysis%kept, output)
   end subroutine keep_point
 

@@ -5,12 +5,13 @@ module mpm_run_job
   use mpm_deck_card, only: deck_t, folder_of
   use mpm_deck_signature, only: deck_signature
   use mpm_diagnostics, only: diagnostics_t, to_error, warnings_text
-  use mpm_error, only: error_t, exit_deck, exit_expectation, exit_file, exit_ok, make_error
+  use mpm_error, only: error_t, exit_deck, exit_expectation, exit_file, &
+                       exit_interrupted, exit_ok, exit_terminated, make_error
   use mpm_expectations, only: n_failed_expectations, verdict_line
   use mpm_external_force, only: prepare_loads
   use mpm_increments, only: begin_step, schedule_t, start_increment
   use mpm_input_deck, only: read_deck
-  use mpm_interruption, only: catch_signals
+  use mpm_interruption, only: catch_signals, received_signal, signal_interrupt
   use mpm_kinds, only: dp
   use mpm_log_model, only: model_text
   use mpm_model, only: formulation_fbar, formulation_standard, model_t
@@ -26,6 +27,7 @@ module mpm_run_job
   use mpm_run_memory, only: check_memory
   use mpm_run_output, only: close_output, open_output, run_output_t
   use mpm_run_state, only: make_run_info, run_info_t, run_state_t
+  use mpm_source_excerpt, only: printable
   use mpm_solve_job, only: make_body, prepare_increment, solve_job
   use mpm_system, only: body_t, free_system, open_system, system_t
   use mpm_tangent_check, only: check_tangent, tangent_report_t
@@ -58,7 +60,12 @@ contains
     call make_run_info(info, deck%file(1)%path, deck%source, options%threads, options%quiet)
     info%verbose = options%verbose
     info%warnings = warnings
+    call catch_signals()
     do i = 1, size(formulation)
+      if (received_signal() /= 0) then
+        exit_code = merge(exit_interrupted, exit_terminated, received_signal() == signal_interrupt)
+        return
+      end if
       variant = model
       info%formulation = formulation_name(formulation(i))
       call choose_formulation(variant, formulation(i), size(options%compare) > 0)
@@ -175,7 +182,6 @@ contains
     restart%deck_signature = deck_signature(deck)
     restart%formulation = info%formulation
     restart%written_by = info%version//" "//info%git
-    call catch_signals()
     call solve_job(output, state, model, restart, options%check, failure)
     if (allocated(failure)) then
       exit_code = failure%code
@@ -204,7 +210,7 @@ contains
     logical :: is_mark
 
     message = "restarted "//info%started//" from "//options%restart//" at "//place_text(restart)// &
-              ", written by Tessera "//restart%written_by
+              ", written by Tessera "//printable(restart%written_by)
     if (are_there_results(paths)) then
       call read_mark(mark, restart%output_mark, is_mark)
       if (is_mark) then
@@ -214,7 +220,7 @@ contains
                         "' does not fit: output_mark: expected where the results stand")
       end if
       output%is_resumed = .not. allocated(error)
-      if (output%is_resumed .or. .not. options%force) return
+      return
     end if
     call open_output(output, paths, model, info, error)
     if (.not. allocated(error)) call log_message(output%log, message, error)

@@ -64,6 +64,7 @@ contains
         call begin_step(analysis%schedule, i, model%step(i)%schedule, &
                         stop_times(model, i, analysis%schedule%total_time))
         analysis%u_start = analysis%body%points%u
+        call begin_watch(analysis%watch)
       end if
       call solve_step(analysis, output, state, model, error)
     end do
@@ -147,7 +148,8 @@ contains
     type(model_t), intent(inout)      :: model    !! not changed
     type(error_t), allocatable, intent(out) :: error
 
-    call begin_watch(analysis%watch)
+    call check_count(analysis%schedule, model, error) ! of a restart
+    if (allocated(error)) return
     associate (body => analysis%body, system => analysis%system, schedule => analysis%schedule, &
                report => analysis%report)
       do while (.not. schedule%finished)
@@ -178,7 +180,7 @@ contains
                                   model%step(schedule%step)%newton%max_stretch)
           cycle
         end if
-        call watch_increment(analysis%watch, system, report, schedule)
+        call watch_increment(analysis%watch, system, report)
         call note_limit_load(analysis%watch, output, system, report, schedule, error)
         if (allocated(error)) return
         call close_increment(analysis, output, state, model, report%n_iterations, error)

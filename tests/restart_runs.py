@@ -98,6 +98,36 @@ RF, U
 """
 
 
+# Ground under a plate that goes down evenly: every increment but the first begins with the last.
+STRIP = """\
+*GENERATE, TYPE=BOX, DIMENSION=2, ORDER=QUADRATIC
+X, 0, 4, 4
+Y, 0, 2, 2
+*NSET, NSET=PLATE, BOX
+-0.1, 1.1, 1.9, 2.1
+*FORMULATION, TYPE=FBAR PATCH
+*PATCH, SOURCE=QUADRATIC
+*MATERIAL, NAME=CLAY
+*ELASTIC
+1000, 0.4
+*PLASTIC, LAW=VON MISES, STRENGTH=UNIAXIAL
+20
+*MATERIAL POINTS, ELSET=ALL, MATERIAL=CLAY, PER ELEMENT=4
+*MOVING MESH, DRIVER=PLATE, DIRECTION=0,1, FIXED=Y0
+*STEP
+*STATIC
+0.1, 1.0, 0.001, 0.2
+*BOUNDARY
+X0, 1, 1
+X1, 1, 1
+Y0, 2, 2
+PLATE, 2, 2, -0.05
+*HISTORY, NSET=PLATE
+RF, U
+*END STEP
+"""
+
+
 def without_time(path):
     """All lines of a history or status file but those that name program and revision."""
     lines = path.read_text(encoding="utf-8").splitlines()

@@ -6,17 +6,21 @@ import shutil
 import signal
 import subprocess
 import time
+import zlib
 
+import h5py
 import pytest
 from conftest import ROOT
-from restart_runs import CUBE, PLATE, assert_same_run, datasets
+from restart_runs import CUBE, PLATE, STRIP, assert_same_run, datasets
 
 STRETCH = (ROOT / "input" / "stretch" / "stretch.inp").read_text(encoding="utf-8")
 GO_ON = "job.restart.h5"
 
 
 @pytest.mark.parametrize(
-    ("deck", "at_least"), [(PLATE, 12), (CUBE, 5), (STRETCH, 16)], ids=["plate", "cube", "stretch"]
+    ("deck", "at_least"),
+    [(PLATE, 12), (CUBE, 5), (STRETCH, 16), (STRIP, 4)],
+    ids=["plate", "cube", "stretch", "strip"],
 )
 def test_every_increment_can_be_gone_on_from(run_tessera, tmp_path, deck, at_least):
     """The run is stopped after each increment; every second part has two threads."""
@@ -49,6 +53,12 @@ def test_plate_has_all_that_a_restart_must_bring_back(run_tessera, tmp_path):
     assert "checkerboard" in log
     mesh = datasets(tmp_path / "job_mesh.vtkhdf")["VTKHDF/Points"]
     assert (mesh[: len(mesh) // 2] != mesh[-(len(mesh) // 2) :]).any()
+
+
+def test_strip_begins_with_the_last_increment(run_tessera):
+    run = run_tessera(STRIP)
+    assert run.code == 0
+    assert run.read("job.log").count("started from the last increment") > 3
 
 
 def test_cube_loses_points_on_its_way(run_tessera, tmp_path):
@@ -116,7 +126,11 @@ LONG = LONG[: LONG.index("*EXPECT")] + "*END STEP\n"
 
 @pytest.mark.parametrize(
     ("number", "code", "word"),
-    [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")],
+    [
+        (signal.SIGINT, 130, "interrupted"),
+        (signal.SIGTERM, 143, "terminated"),
+        (signal.SIGHUP, 143, "terminated"),
+    ],
 )
 def test_signal_ends_with_a_restart_file(tessera, run_tessera, tmp_path, number, code, word):
     process = running(tessera, tmp_path, LONG)
@@ -301,3 +315,70 @@ def test_damaged_files_are_refused(run_tessera, tmp_path):
     assert "restart file 'missing.h5' cannot be opened" in run.stderr
     run = run_tessera(deck, "-q", "--restart", ".")
     assert run.code == 8
+
+
+def sealed(path):
+    """Makes the seal of a restart file right again."""
+    data = path.read_bytes()[512:]
+    seal = "Tessera restart file\nformat 1\n"
+    seal += f"length {len(data)}\nchecksum {zlib.crc32(data):08X}\n"
+    path.write_bytes(seal.encode().ljust(512) + data)
+
+
+@pytest.mark.parametrize("kind", ["link", "external", "filter"])
+def test_values_in_other_files_are_not_followed(run_tessera, tmp_path, kind):
+    """A file made by hand with a right seal: it may name a pipe that is never written to."""
+    deck = CUBE.replace("*HISTORY", "*RESTART, WRITE\n*HISTORY")
+    run_tessera(deck, "-q", "-o", "out")
+    path = tmp_path / "bad.h5"
+    shutil.copy(tmp_path / "out" / GO_ON, path)
+    os.mkfifo(tmp_path / "pipe")
+    with h5py.File(path, "r+") as file:
+        value = file["point_x"][()]
+        del file["point_x"]
+        if kind == "link":
+            file["point_x"] = h5py.ExternalLink(str(tmp_path / "pipe"), "/point_x")
+        elif kind == "external":
+            storage = [(str(tmp_path / "pipe"), 0, value.nbytes)]
+            file.create_dataset("point_x", value.shape, value.dtype, external=storage)
+        else:
+            file.create_dataset("point_x", data=value, compression="gzip")
+    sealed(path)
+    run = run_tessera(deck, "-q", "--restart", "bad.h5", "-o", "new", timeout=30)
+    assert run.code == 8
+    assert "bad.h5' does not fit: point_x: expected " in run.stderr
+
+
+def test_texts_of_a_restart_file_are_printable(run_tessera, tmp_path):
+    deck = CUBE.replace("*HISTORY", "*RESTART, WRITE\n*HISTORY")
+    run_tessera(deck, "-q", "-o", "out")
+    path = tmp_path / "bad.h5"
+    shutil.copy(tmp_path / "out" / GO_ON, path)
+    with h5py.File(path, "r+") as file:
+        file["formulation"][0:5] = list(b"\x1b[31m")
+    sealed(path)
+    run = run_tessera(deck, "-q", "--restart", "bad.h5", "-o", "new")
+    assert run.code == 2
+    assert "\x1b" not in run.stderr
+
+
+def test_used_up_increments_stay_used_up(run_tessera):
+    deck = CUBE.replace("*STEP, NAME=PUSH", "*STEP, NAME=PUSH, INC=7").replace(
+        "1.0, 6.0", "0.5, 3.0"
+    )
+    deck = deck.replace("*STATIC, DIRECT", "*STATIC").replace("INC=7", "INC=2")
+    assert run_tessera(deck, "-q").code == 4
+    run = run_tessera(deck, "-q", "--restart", GO_ON)
+    assert run.code == 4
+    assert "2 increments done" in run.stderr
+    assert "increment 2," in run.stderr
+
+
+def test_force_overwrites_nothing_on_a_restart(run_tessera, tmp_path):
+    deck = CUBE.replace("*HISTORY", "*RESTART, WRITE\n*HISTORY")
+    run_tessera(deck, "-q")
+    history = (tmp_path / "job_history.csv").read_bytes()
+    (tmp_path / "job.sta").unlink()
+    run = run_tessera(deck, "-q", "--restart", "job.restart.1.h5", "--force")
+    assert run.code == 8
+    assert (tmp_path / "job_history.csv").read_bytes() == history

@@ -149,6 +149,15 @@ def test_load_control_tells_the_limit_load_of_a_bar(run_tessera):
     assert float(limit) == pytest.approx(100 * 20 * 2 / np.sqrt(3) / 40, rel=0.03)
 
 
+def test_slow_start_of_a_load_is_no_limit_load(run_tessera):
+    """An amplitude that begins flat: its rate rises thousandfold in an elastic bar."""
+    deck = bar("*DSLOAD, AMPLITUDE=RAMP\nX1, TRVEC, 10, 1, 0, 0", "0.01, 1", ", DIRECT")
+    deck = deck.replace("*STEP", "*AMPLITUDE, NAME=RAMP\n0, 0\n0.1, 0.0001\n1, 1\n*STEP", 1)
+    run = run_tessera(deck.replace("*MOVING MESH, DRIVER=X1, DIRECTION=1,0, FIXED=X0\n", ""))
+    assert run.code == 0
+    assert "note" not in run.stderr
+
+
 @pytest.mark.parametrize(
     "deck",
     [

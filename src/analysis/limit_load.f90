@@ -16,7 +16,8 @@ module mpm_limit_load
 
   !> What is known about the loads of a step. A restart needs it.
   type :: limit_watch_t
-    real(dp) :: flexibility = 0.0_dp !! way of the load over time in the first increment, 0 before it
+    real(dp) :: flexibility = 0.0_dp !! way of the load over its growth in the first increment that
+                                     !! it drives, 0 before it [length/force]
     real(dp) :: softness = 0.0_dp    !! that of the last increment over the first, 0 if not by load [-]
     real(dp) :: load = 0.0_dp        !! norm of the load in the last accepted increment [force]
     logical  :: told = .false.       !! the limit load was met in this step
@@ -34,25 +35,25 @@ contains
   end subroutine begin_watch
 
   !> Notes how far the load of an increment in equilibrium has gone. Source: theory.md (15d).
-  pure subroutine watch_increment(watch, system, report, schedule)
+  pure subroutine watch_increment(watch, system, report)
     type(limit_watch_t), intent(inout) :: watch
     type(system_t), intent(in)        :: system   !! in equilibrium
     type(newton_report_t), intent(in) :: report   !! of the attempt
-    type(schedule_t), intent(in)      :: schedule !! the increment is open
-    real(dp) :: load(system%dofs%n), way(system%dofs%n), norm, flexibility
+    real(dp) :: load(system%dofs%n), way(system%dofs%n), norm, flexibility, growth
     logical :: driven
 
     call gather_free(system%dofs, system%f_ext, load)
     call gather_free(system%dofs, system%u, way)
     norm = norm2(load)
     driven = is_driven_by_load(watch, system, report)
+    growth = norm - watch%load
     watch%load = norm
     watch%softness = 0.0_dp
-    if (norm <= 0.0_dp) return
-    flexibility = abs(dot_product(load/norm, way))/schedule%size
+    if (.not. driven .or. growth <= epsilon(1.0_dp)*norm) return
+    flexibility = abs(dot_product(load/norm, way))/growth
     if (watch%flexibility <= 0.0_dp) then
       watch%flexibility = flexibility
-    else if (driven) then
+    else
       watch%softness = flexibility/watch%flexibility
     end if
   end subroutine watch_increment
@@ -73,9 +74,19 @@ contains
     else if (all(report%outcome /= [outcome_memory, outcome_stretched])) then
       if (.not. is_driven_by_load(watch, system, report)) return
       met = watch%softness > softer &
-            .or. (schedule%attempt > 1 .and. report%reach > soft*watch%flexibility*schedule%size)
+            .or. (schedule%attempt > 1 .and. report%reach > soft*watch%flexibility &
+                                                            *(load_norm(system) - watch%load))
     end if
   end function meets_limit_load
+
+  !> Norm of the applied forces on unknowns.
+  pure real(dp) function load_norm(system) result(norm)
+    type(system_t), intent(in) :: system !! forces of an increment
+    real(dp) :: load(system%dofs%n)
+
+    call gather_free(system%dofs, system%f_ext, load)
+    norm = norm2(load)
+  end function load_norm
 
   !> Whether nothing moves but by growing loads, and what is out of balance at the start is their
   !! growth: not a body that hangs on its new mesh in another way than on the old one.
@@ -83,10 +94,9 @@ contains
     type(limit_watch_t), intent(in)   :: watch  !! at the last accepted increment
     type(system_t), intent(in)        :: system !! after an attempt
     type(newton_report_t), intent(in) :: report !! of the attempt
-    real(dp) :: load(system%dofs%n), norm
+    real(dp) :: norm
 
-    call gather_free(system%dofs, system%f_ext, load)
-    norm = norm2(load)
+    norm = load_norm(system)
     driven = norm > watch%load .and. all(abs(system%dofs%prescribed) <= 0.0_dp)
     if (driven) driven = report%at_rest <= 2.0_dp*(1.0_dp - watch%load/norm)
   end function is_driven_by_load

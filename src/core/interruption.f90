@@ -2,12 +2,15 @@
 !!
 !! A handler has no arguments of ours, so that what it notes must be a variable of the module.
 module mpm_interruption
-  use, intrinsic :: iso_c_binding, only: c_associated, c_funloc, c_funptr, c_int, c_intptr_t
+  use, intrinsic :: iso_c_binding, only: c_funloc, c_funptr, c_int, c_intptr_t
   implicit none
   private
-  public :: catch_signals, forget_signal, received_signal, signal_interrupt, signal_terminate
+  public :: catch_signals, forget_signal, received_signal
+  public :: signal_hang_up, signal_interrupt, signal_terminate
 
+  integer, parameter :: signal_hang_up = 1    !! SIGHUP: the terminal went away
   integer, parameter :: signal_interrupt = 2  !! SIGINT
+  integer, parameter :: signal_pipe = 13      !! SIGPIPE: nobody reads what is written
   integer, parameter :: signal_terminate = 15 !! SIGTERM
   integer, parameter :: exit_of_signal = 128  !! added to the signal: exit code, as shells do
 
@@ -33,26 +36,32 @@ module mpm_interruption
 
 contains
 
-  !> From now on SIGINT and SIGTERM are noted. A SIGINT that the program was started to ignore, as
-  !! shells do for work in the background, stays ignored.
+  !> From now on SIGINT, SIGTERM and SIGHUP are noted. One that the program was started to ignore, as
+  !! shells do for work in the background, stays ignored. A pipe that nobody reads any more is no
+  !! reason to end.
   subroutine catch_signals()
-    type(c_funptr) :: previous
     integer(c_intptr_t), parameter :: ignore = 1_c_intptr_t ! SIG_IGN
+    integer, parameter :: noted(3) = [signal_interrupt, signal_terminate, signal_hang_up]
+    type(c_funptr) :: previous
+    integer :: i
 
     received = 0_c_int
-    previous = c_signal(int(signal_interrupt, c_int), c_funloc(note_signal))
-    if (transfer(previous, ignore) == ignore) then
-      previous = c_signal(int(signal_interrupt, c_int), previous)
-    end if
-    previous = c_signal(int(signal_terminate, c_int), c_funloc(note_signal))
-    if (.not. c_associated(previous)) return ! it had its default action
+    do i = 1, size(noted)
+      previous = c_signal(int(noted(i), c_int), c_funloc(note_signal))
+      if (transfer(previous, ignore) == ignore) previous = c_signal(int(noted(i), c_int), previous)
+    end do
+    previous = c_signal(int(signal_pipe, c_int), transfer(ignore, previous))
   end subroutine catch_signals
 
   !> Notes a signal; the second one ends the program at once. Called by the system.
   subroutine note_signal(number) bind(c)
     integer(c_int), value :: number !! signal
 
-    if (received /= 0_c_int) call c_exit_now(int(exit_of_signal, c_int) + number)
+    integer(c_int) :: code
+
+    code = int(exit_of_signal + signal_terminate, c_int)
+    if (number == int(signal_interrupt, c_int)) code = int(exit_of_signal, c_int) + number
+    if (received /= 0_c_int) call c_exit_now(code)
     received = number
   end subroutine note_signal
 

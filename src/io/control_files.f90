@@ -7,13 +7,17 @@ module mpm_control_files
 
 contains
 
-  !> Looks for a file and takes it away.
+  !> Looks for a file and takes it away; what cannot be taken away, such as a folder, is none.
   subroutine take_request(asked, path)
     logical, intent(out) :: asked    !! it was there
     character(*), intent(in) :: path !! JOB.stop or JOB.restart
+    logical :: remains
 
     inquire (file=path, exist=asked)
-    if (asked) call remove_file(path)
+    if (.not. asked) return
+    call remove_file(path)
+    inquire (file=path, exist=remains)
+    asked = .not. remains
   end subroutine take_request
 
 end module mpm_control_files

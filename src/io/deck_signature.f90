@@ -6,6 +6,7 @@ module mpm_deck_signature
   use mpm_diagnostics, only: diagnostics_t, error_at_keyword, to_error
   use mpm_error, only: error_t, exit_deck
   use mpm_kinds, only: dp, ip
+  use mpm_source_excerpt, only: printable
   use mpm_text, only: integer_text, parse_real, to_upper
   implicit none
   private
@@ -164,7 +165,7 @@ contains
     if (first == 0) return
     last = index(line, " #") - 1
     if (last < first) last = len(line)
-    text = line(first:last)
+    text = printable(line(first:last))
     if (last < len(line)) text = text//" with other data lines"
   end function described
 

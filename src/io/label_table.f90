@@ -1,5 +1,6 @@
 !> Finds items by the numbers that the user gave them; memory does not depend on the numbers.
 module mpm_label_table
+  use mpm_kinds, only: ip
   implicit none
   private
   public :: label_table_t, build_label_table, find_label
@@ -31,7 +32,8 @@ contains
       end if
     end do
     if (size(label) == 0) return
-    table%dense = table%label(size(label)) - table%label(1) == size(label) - 1
+    table%dense = int(table%label(size(label)), ip) - int(table%label(1), ip) == &
+                  int(size(label), ip) - 1_ip
   end subroutine build_label_table
 
   !> Merge sort of a list by the keys of its items; stable.

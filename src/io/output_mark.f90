@@ -89,6 +89,8 @@ contains
     call next_line(mark%run_id, text, at)
     call next_numbers(numbers, text, at)
     is_mark = size(numbers) == 6
+    if (is_mark) is_mark = all(numbers(:4) >= 0_ip) .and. all(numbers(5:) >= -1_ip) .and. &
+                           all(numbers(5:) <= int(huge(1), ip))
     if (.not. is_mark) return
     mark%status = text_mark_t(numbers(1), numbers(2))
     mark%history = text_mark_t(numbers(3), numbers(4))

@@ -199,12 +199,13 @@ contains
     integer(ip), intent(out) :: length               !! [bytes]
     character(*), intent(in) :: path                 !! file
     type(error_t), allocatable, intent(out) :: error !! exit_file: cannot be read
-    character(block_length) :: buffer
+    character(:), allocatable :: buffer
     character(200) :: reason
     integer(ip) :: n_bytes, done
     integer :: n, status, unit
 
     checksum = 0_ip
+    allocate (character(block_length) :: buffer)
     done = int(seal_length, ip)
     inquire (file=path, size=n_bytes)
     length = max(0_ip, n_bytes - done)

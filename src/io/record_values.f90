@@ -8,8 +8,10 @@
 module mpm_record_values
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
-  use hdf5, only: h5dclose_f, h5dcreate_f, h5dget_space_f, h5dget_type_f, h5dopen_f, h5dread_f, &
-                  h5dwrite_f, h5kind_to_type, h5sclose_f, &
+  use hdf5, only: h5d_contiguous_f, h5dclose_f, h5dcreate_f, h5dget_create_plist_f, &
+                  h5dget_space_f, h5dget_type_f, h5dopen_f, h5dread_f, h5dwrite_f, &
+                  h5l_type_hard_f, h5lget_info_f, h5pclose_f, h5pget_external_count_f, &
+                  h5pget_layout_f, h5pget_nfilters_f, h5kind_to_type, h5sclose_f, &
                   h5screate_simple_f, h5sget_simple_extent_dims_f, h5sget_simple_extent_ndims_f, &
                   h5t_float_f, h5t_ieee_f64le, h5t_integer_f, h5t_std_i64le, h5t_std_u8le, &
                   h5tclose_f, h5tget_class_f, h5tget_size_f, h5_integer_kind, h5_real_kind, &
@@ -117,7 +119,7 @@ contains
     call read_block(record, name, extents, [int(h5t_integer_f, hid_t), memory_type], c_loc(long), &
                     error)
     if (allocated(error)) return
-    if (any(abs(long) > huge(1))) then
+    if (any(long < -huge(1) .or. long > huge(1))) then
       call refuse_value(record, name, "integers of 32 bits", error)
       return
     end if
@@ -197,12 +199,14 @@ contains
     integer :: status
     logical :: fits
 
-    call h5dopen_f(record%id, name, dataset, status)
+    status = -1
+    if (is_in_file(record%id, name)) call h5dopen_f(record%id, name, dataset, status)
     if (status < 0) then
       call refuse_value(record, name, "to be there", error)
       return
     end if
-    fits = has_shape(dataset, extents) .and. has_class(dataset, int(kinds(1)))
+    fits = has_shape(dataset, extents) .and. has_class(dataset, int(kinds(1))) .and. &
+           is_stored_plainly(dataset)
     if (.not. fits) then
       call refuse_value(record, name, "the shape and the type that the deck gives it", error)
     else if (all(extents > 0)) then
@@ -212,6 +216,41 @@ contains
     end if
     call h5dclose_f(dataset, status)
   end subroutine read_block
+
+  !> Whether a name stands for an object of the file itself, not of another one.
+  function is_in_file(file, name) result(is_there)
+    integer(hid_t), intent(in) :: file !! open
+    character(*), intent(in)   :: name !! of a dataset
+    logical :: is_there
+    integer(hsize_t) :: address
+    integer(size_t)  :: length
+    integer :: character_set, order, link_type, status
+    logical :: is_ordered
+
+    call h5lget_info_f(file, name, character_set, order, is_ordered, link_type, address, length, &
+                       status)
+    is_there = status >= 0
+    if (is_there) is_there = link_type == h5l_type_hard_f
+  end function is_in_file
+
+  !> Whether the values of a dataset lie in the file itself as they are: not in other files, nor
+  !! behind a filter.
+  function is_stored_plainly(dataset) result(is_plain)
+    integer(hid_t), intent(in) :: dataset !! open
+    logical :: is_plain
+    integer(hid_t) :: properties
+    integer :: layout, n_external, n_filters, status
+
+    is_plain = .false.
+    call h5dget_create_plist_f(dataset, properties, status)
+    if (status < 0) return
+    call h5pget_layout_f(properties, layout, status)
+    if (status >= 0) call h5pget_external_count_f(properties, n_external, status)
+    if (status >= 0) call h5pget_nfilters_f(properties, n_filters, status)
+    if (status >= 0) is_plain = layout == h5d_contiguous_f .and. n_external == 0 .and. &
+                                n_filters == 0
+    call h5pclose_f(properties, status)
+  end function is_stored_plainly
 
   !> Whether a dataset has a shape.
   function has_shape(dataset, extents) result(fits)

@@ -4,6 +4,7 @@ module mpm_restart_state
   use mpm_error, only: error_t
   use mpm_increments, only: schedule_t
   use mpm_kinds, only: dp
+  use mpm_limit_load, only: limit_watch_t
   use mpm_material_points, only: points_t, status_inside, status_removed
   use mpm_model, only: model_t
   use mpm_record_file, only: record_t
@@ -14,7 +15,7 @@ module mpm_restart_state
   implicit none
   private
   public :: restart_t
-  public :: exchange_body, exchange_run_state, exchange_schedule, exchange_starts
+  public :: exchange_body, exchange_run_state, exchange_schedule, exchange_starts, exchange_watch
 
   !> A run after an accepted increment.
   type :: restart_t
@@ -23,6 +24,7 @@ module mpm_restart_state
     real(dp), allocatable :: mesh_x(:, :)      !! (n_dim, n_node)  coordinates [length]
     real(dp), allocatable :: u_start(:, :)     !! (n_dim, n)  displacements of the points at the
                                                !!             start of the step [length]
+    type(limit_watch_t) :: watch               !! of the loads
     type(points_t) :: points                   !! converged
     type(surface_points_t) :: surface          !! of the loads with CARRIER=POINTS
     character(:), allocatable :: written_by    !! version and revision of the program
@@ -59,6 +61,18 @@ contains
     call exchange_real(record, "schedule_ghost_raise", schedule%ghost_raise, error)
     call exchange_logical(record, "schedule_finished", schedule%finished, error)
   end subroutine exchange_schedule
+
+  !> What is known about the loads of the step.
+  subroutine exchange_watch(record, watch, error)
+    type(record_t), intent(in) :: record               !! open
+    type(limit_watch_t), intent(inout) :: watch        !! written, or read
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+
+    call exchange_real(record, "watch_flexibility", watch%flexibility, error)
+    call exchange_real(record, "watch_softness", watch%softness, error)
+    call exchange_real(record, "watch_load", watch%load, error)
+    call exchange_logical(record, "watch_told", watch%told, error)
+  end subroutine exchange_watch
 
   !> What the writers are told. The arrays have the sizes of the model.
   subroutine exchange_run_state(record, state, error)
