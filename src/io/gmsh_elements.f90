@@ -1,7 +1,7 @@
 !> The section $Elements of a gmsh file.
 module mpm_gmsh_elements
-  use mpm_gmsh_mesh, only: first_storage, gmsh_block_t, gmsh_mesh_t, grow, grow_blocks, grown_size, &
-    & max_nodes, type_dimension, type_name, type_nodes
+  use mpm_gmsh_mesh, only: first_storage, gmsh_block_t, gmsh_mesh_t, grow, grow_blocks, &
+    & grown_size, max_nodes, type_dimension, type_name, type_nodes
   use mpm_gmsh_scanner, only: end_line, fail_at_line, fail_at_token, failed, gmsh_scanner_t, &
     & next_count, next_integer, next_line, number_failure, read_count
   use mpm_label_table, only: build_label_table, find_label, label_table_t
