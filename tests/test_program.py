@@ -42,3 +42,9 @@ def test_wrong_command_line_exits_1(tessera, run_program, arguments):
     assert run.stdout == ""
     assert run.stderr != ""
     assert "Backtrace" not in run.stderr
+
+
+def test_pages_hold_no_placeholders():
+    pages = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")]
+    assert len(pages) > 8
+    assert [page.name for page in pages if "@@" in page.read_text(encoding="utf-8")] == []

@@ -91,17 +91,18 @@ class RestartMutator:
 
 def change_dataset(random: Random, file: h5py.File, name: str) -> None:
     """One value, the shape, the type, or all of a dataset."""
-    if name not in file or not isinstance(file[name], h5py.Dataset):
+    if not isinstance(file.get(name), h5py.Dataset):
         return
     old = file[name][()]
     if isinstance(old, bytes):
         old = np.bytes_(old)
     value = np.array(old)
     kind = random.randrange(5)
-    if kind < 2 and value.size > 0 and value.dtype.kind in "if" and value.ndim > 0:
+    if kind < 2 and value.size > 0 and value.dtype.kind in "iuf" and value.ndim > 0:
         place = tuple(random.randrange(n) for n in value.shape)
-        new = random.choice(INTEGERS if value.dtype.kind == "i" else REALS)
-        value[place] = new
+        new = np.array(random.choice(REALS if value.dtype.kind == "f" else INTEGERS))
+        with np.errstate(all="ignore"):
+            value[place] = new.astype(value.dtype)  # wraps: bytes of texts, too
         file[name][...] = value
         return
     del file[name]
@@ -113,8 +114,12 @@ def change_dataset(random: Random, file: h5py.File, name: str) -> None:
     elif kind == 3:
         other = random.choice((np.int8(1), np.float32(1), np.bytes_(b"x" * 300), "text", 2**62))
         file[name] = random.choice((other, [other] * max(value.size, 1)))
-    elif kind == 4 and random.random() < 0.5:
-        file.create_group(name)
+    elif kind == 4:
+        what = random.randrange(3)
+        if what == 0:
+            file.create_group(name)
+        elif what == 1:
+            file[name] = h5py.ExternalLink("/dev/zero", "/" + name)
 
 
 def sealed(data: bytes) -> bytes:
