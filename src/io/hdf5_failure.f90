@@ -1,8 +1,9 @@
 !> Why a call of HDF5 failed, in the words of the operating system where there are any.
 module mpm_hdf5_failure
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_funloc, c_funptr, &
-                                         c_int, c_int64_t, c_loc, c_ptr, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_f_pointer, c_funloc, c_funptr, c_int, c_int64_t, c_loc, &
+                                         c_ptr
   use mpm_error, only: error_t, exit_file, make_error
+  use mpm_system_failure, only: fortran_text
   implicit none
   private
   public :: hdf5_failure
@@ -40,14 +41,6 @@ module mpm_hdf5_failure
       type(c_ptr), value :: finding
       integer(c_int) :: status
     end function h5_walk_errors
-
-    !> Length of a C string.
-    pure function c_length(text) bind(c, name="strlen") result(length)
-      import :: c_ptr, c_size_t
-      implicit none
-      type(c_ptr), value :: text
-      integer(c_size_t) :: length
-    end function c_length
   end interface
 
 contains
@@ -102,20 +95,5 @@ contains
     length = index(description(first:), "'") - 1
     if (length > 0) message = description(first:first + length - 1)
   end function system_message
-
-  !> A C string as Fortran text.
-  function fortran_text(text) result(copy)
-    type(c_ptr), intent(in) :: text !! may be null
-    character(:), allocatable :: copy
-    character(kind=c_char), pointer :: letters(:)
-    integer :: i
-
-    copy = ""
-    if (.not. c_associated(text)) return
-    call c_f_pointer(text, letters, [c_length(text)])
-    do i = 1, size(letters)
-      copy = copy//letters(i)
-    end do
-  end function fortran_text
 
 end module mpm_hdf5_failure

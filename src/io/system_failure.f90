@@ -1,10 +1,10 @@
 !> Why a call of the C library failed, in the words of the operating system.
 module mpm_system_failure
-  use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_int, c_ptr, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_int, c_ptr, c_size_t
   use mpm_error, only: error_t, exit_file, make_error
   implicit none
   private
-  public :: error_number, system_failure
+  public :: error_number, fortran_text, system_failure
 
   interface
     !> Where the number of the last error is.
@@ -47,18 +47,24 @@ contains
     type(error_t), allocatable, intent(out) :: error !! exit_file with path and reason
     character(*), intent(in) :: action               !! what was tried
     character(*), intent(in) :: path                 !! file
+
+    call make_error(error, exit_file, "error: cannot "//action//" '"//path//"': "// &
+                    fortran_text(c_error_text(error_number())))
+  end subroutine system_failure
+
+  !> A C string as Fortran text.
+  function fortran_text(text) result(copy)
+    type(c_ptr), intent(in) :: text !! may be null
+    character(:), allocatable :: copy
     character(kind=c_char), pointer :: letters(:)
-    type(c_ptr) :: text
-    character(:), allocatable :: reason
     integer :: i
 
-    text = c_error_text(error_number())
+    copy = ""
+    if (.not. c_associated(text)) return
     call c_f_pointer(text, letters, [c_length(text)])
-    reason = ""
     do i = 1, size(letters)
-      reason = reason//letters(i)
+      copy = copy//letters(i)
     end do
-    call make_error(error, exit_file, "error: cannot "//action//" '"//path//"': "//reason)
-  end subroutine system_failure
+  end function fortran_text
 
 end module mpm_system_failure
