@@ -6,7 +6,7 @@ module mpm_von_mises
   use mpm_material, only: bulk_modulus, material_t, shear_modulus, yield_stress_at
   implicit none
   private
-  public :: compare_strength, principal_state_t, return_radially
+  public :: compare_strength, plastic_flow, principal_state_t, return_radially, yield_tolerance
 
   !> A point that was returned to the yield surface stays elastic at rest: without this margin
   !! rounding would decide, and the first tangent of an increment would depend on the compiler.
