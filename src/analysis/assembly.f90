@@ -110,7 +110,8 @@ contains
     end do
   end subroutine apply_tangent
 
-  !> Dense tangent of one patch over its nodes. Source: theory.md (13).
+  !> Dense tangent of one patch over its nodes, the coupling of its elements once per patch.
+  !! Source: theory.md (13), (13c).
   pure subroutine patch_tangent(block, patch, map, mesh, patches, kinematics, sums)
     real(dp), allocatable, intent(inout) :: block(:, :) !! (n_eq, n_eq), n_eq = n_dim times nodes
     integer, intent(in)              :: patch
@@ -119,130 +120,154 @@ contains
     type(patches_t), intent(in)      :: patches
     type(kinematics_t), intent(in)   :: kinematics
     type(element_sums_t), intent(in) :: sums
-    real(dp), allocatable :: divergence(:)
-    real(dp) :: coupling(mesh%n_dim, mesh%n_dim + 1)
-    integer :: equation(mesh%n_dim, mesh%n_dim + 1)
-    integer :: i, e, n_eq, n_active
+    integer :: n_eq
 
     n_eq = mesh%n_dim*(map%node_first(patch + 1) - map%node_first(patch))
     if (allocated(block)) then
       if (size(block, 1) /= n_eq) deallocate (block)
     end if
     if (.not. allocated(block)) allocate (block(n_eq, n_eq))
-    block = 0.0_dp
-    allocate (divergence(n_eq), source=0.0_dp)
-    n_active = 0
-    do i = patches%first(patch), patches%first(patch + 1) - 1
-      e = patches%element(i)
-      if (map%element_local(1, e) == 0) cycle
-      n_active = n_active + 1
-      equation = local_equations(map%element_local(:, e), mesh%n_dim)
-      call add_stiffness(block, equation, kinematics%grad_shape(:, :, e), sums%moduli(:, :, e), &
-                         sums%stress(:, e))
-      call add_divergence(divergence, equation, kinematics%weight(e)*kinematics%grad_shape(:, :, e))
-    end do
-    ! Alone in its patch an element keeps its own volume change: (13) has no coupling.
-    if (n_active < 2) return
-    do i = patches%first(patch), patches%first(patch + 1) - 1
-      e = patches%element(i)
-      if (map%element_local(1, e) == 0) cycle
-      equation = local_equations(map%element_local(:, e), mesh%n_dim)
-      coupling = coupling_force(kinematics%grad_shape(:, :, e), sums%moduli(:, :, e), sums%stress(:, e))
-      call add_coupling(block, equation, coupling, divergence, kinematics%grad_shape(:, :, e))
-    end do
+    associate (first => patches%first(patch), last => patches%first(patch + 1) - 1)
+      ! With a constant number of dimensions the compiler unrolls the small loops inside.
+      if (mesh%n_dim == 3) then
+        call sum_elements(block, patches%element(first:last), 3, n_eq, map, kinematics, sums)
+      else
+        call sum_elements(block, patches%element(first:last), 2, n_eq, map, kinematics, sums)
+      end if
+    end associate
   end subroutine patch_tangent
 
-  !> Equations of an element within the block of its patch.
-  pure function local_equations(local_node, n_dim) result(equation)
-    integer, intent(in) :: local_node(:)                 !! (n_dim+1)  numbers within the patch
-    integer, intent(in) :: n_dim
-    integer :: equation(n_dim, size(local_node))
-    integer :: a, i
+  !> Adds up the tangents of the active elements of a patch and couples them.
+  pure subroutine sum_elements(block, element, n_dim, n_eq, map, kinematics, sums)
+    integer, intent(in)   :: n_dim, n_eq           !! dimensions, equations of the patch
+    real(dp), intent(out) :: block(n_eq, n_eq)
+    integer, intent(in)   :: element(:)            !! elements of the patch
+    type(assembly_map_t), intent(in) :: map
+    type(kinematics_t), intent(in)   :: kinematics
+    type(element_sums_t), intent(in) :: sums
+    real(dp) :: stiffness(n_dim, n_dim + 1, n_dim, n_dim + 1), coupling(n_dim, n_dim + 1)
+    real(dp) :: divergence(n_dim, n_eq/n_dim), pressed(n_dim, n_eq/n_dim)
+    integer :: a, b, e, i, k, m, n_active, node(n_dim + 1)
 
-    do a = 1, size(local_node)
-      do i = 1, n_dim
-        equation(i, a) = (local_node(a) - 1)*n_dim + i
+    block = 0.0_dp
+    divergence = 0.0_dp
+    pressed = 0.0_dp
+    n_active = count(map%element_local(1, element) > 0)
+    do m = 1, size(element)
+      e = element(m)
+      if (map%element_local(1, e) == 0) cycle
+      node = map%element_local(:, e)
+      call element_tangent(stiffness, kinematics%grad_shape(:, :, e), sums%moduli(:, :, e), &
+                           sums%stress(:, e), n_dim)
+      ! Alone in its patch an element keeps its own volume change: (13) has no coupling.
+      if (n_active > 1) then
+        call couple(stiffness, coupling, kinematics%grad_shape(:, :, e), sums%moduli(:, :, e), &
+                    sums%stress(:, e), n_dim)
+        do a = 1, n_dim + 1
+          divergence(:, node(a)) = divergence(:, node(a)) &
+                                   + kinematics%weight(e)*kinematics%grad_shape(:, a, e)
+          pressed(:, node(a)) = pressed(:, node(a)) + coupling(:, a)
+        end do
+      end if
+      do b = 1, n_dim + 1
+        do k = 1, n_dim
+          do a = 1, n_dim + 1
+            do i = 1, n_dim
+              associate (entry => block((node(a) - 1)*n_dim + i, (node(b) - 1)*n_dim + k))
+                entry = entry + stiffness(i, a, k, b)
+              end associate
+            end do
+          end do
+        end do
       end do
     end do
-  end function local_equations
+    if (n_active > 1) call add_product(block, pressed, divergence, n_eq)
+  end subroutine sum_elements
 
   !> sum v [grad S]^T a [grad S] with a_ijkl = c_ijkl/Jbar + delta_ik sigma_jl. Source: theory.md (12).
-  pure subroutine add_stiffness(block, equation, grad_shape, moduli, stress)
-    real(dp), intent(inout) :: block(:, :)        !! (n_eq, n_eq)
-    integer, intent(in)     :: equation(:, :)     !! (n_dim, n_dim+1)
-    real(dp), intent(in)    :: grad_shape(:, :)   !! (n_dim, n_dim+1)  current gradients
-    real(dp), intent(in)    :: moduli(6, 6)       !! sum v c/Jbar
-    real(dp), intent(in)    :: stress(6)          !! sum v sigma
-    real(dp) :: column(6), tensor(3, 3), rate(3, 3)
-    real(dp) :: traction(size(grad_shape, 1)), force(size(grad_shape, 1))
-    integer :: a, b, j, k, n_dim
+  pure subroutine element_tangent(stiffness, grad_shape, moduli, stress, n_dim)
+    integer, intent(in)   :: n_dim
+    real(dp), intent(out) :: stiffness(n_dim, n_dim + 1, n_dim, n_dim + 1) !! (i, a, k, b)
+    real(dp), intent(in)  :: grad_shape(n_dim, n_dim + 1) !! current gradients
+    real(dp), intent(in)  :: moduli(6, 6)                 !! sum v c/Jbar
+    real(dp), intent(in)  :: stress(6)                    !! sum v sigma
+    real(dp) :: column(6), traction(n_dim), initial
+    integer :: a, b, i, j, k
 
-    n_dim = size(grad_shape, 1)
-    tensor = tensor_from_voigt(stress)
     do b = 1, n_dim + 1
-      traction = matmul(tensor(1:n_dim, 1:n_dim), grad_shape(:, b))
+      do i = 1, n_dim
+        traction(i) = 0.0_dp
+        do j = 1, n_dim
+          traction(i) = traction(i) + stress(voigt_index(i, j))*grad_shape(j, b)
+        end do
+      end do
       do k = 1, n_dim
         column = 0.0_dp
         do j = 1, n_dim
           column = column + moduli(:, voigt_index(k, j))*grad_shape(j, b)
         end do
-        rate = tensor_from_voigt(column)
         do a = 1, n_dim + 1
-          force = matmul(rate(1:n_dim, 1:n_dim), grad_shape(:, a))
-          force(k) = force(k) + dot_product(grad_shape(:, a), traction)
-          block(equation(:, a), equation(k, b)) = block(equation(:, a), equation(k, b)) + force
+          initial = 0.0_dp
+          do i = 1, n_dim
+            stiffness(i, a, k, b) = 0.0_dp
+            do j = 1, n_dim
+              stiffness(i, a, k, b) = stiffness(i, a, k, b) &
+                                      + column(voigt_index(i, j))*grad_shape(j, a)
+            end do
+            initial = initial + grad_shape(i, a)*traction(i)
+          end do
+          stiffness(k, a, k, b) = stiffness(k, a, k, b) + initial
         end do
       end do
     end do
-  end subroutine add_stiffness
+  end subroutine element_tangent
 
-  !> Adds w_s times the divergence row of an element to that of its patch.
-  pure subroutine add_divergence(divergence, equation, weighted_gradient)
-    real(dp), intent(inout) :: divergence(:)           !! (n_eq)  t_P as a row over the patch nodes
-    integer, intent(in)     :: equation(:, :)          !! (n_dim, n_dim+1)
-    real(dp), intent(in)    :: weighted_gradient(:, :) !! (n_dim, n_dim+1)
-    integer :: a
+  !> Takes away the element's own share (G^T Q) tr g_e and gives [grad S]^T q with
+  !! sum v q = (sum v c/Jbar : I + 2 sum v sigma)/n. Source: theory.md (13), (14a).
+  pure subroutine couple(stiffness, coupling, grad_shape, moduli, stress, n_dim)
+    integer, intent(in)     :: n_dim
+    real(dp), intent(inout) :: stiffness(n_dim, n_dim + 1, n_dim, n_dim + 1) !! (i, a, k, b)
+    real(dp), intent(out)   :: coupling(n_dim, n_dim + 1)   !! G^T Q
+    real(dp), intent(in)    :: grad_shape(n_dim, n_dim + 1) !! current gradients
+    real(dp), intent(in)    :: moduli(6, 6)                 !! sum v c/Jbar
+    real(dp), intent(in)    :: stress(6)                    !! sum v sigma
+    real(dp) :: q(6)
+    integer :: a, b, i, j, k
 
-    do a = 1, size(equation, 2)
-      divergence(equation(:, a)) = divergence(equation(:, a)) + weighted_gradient(:, a)
+    q = 2.0_dp*stress
+    do j = 1, n_dim
+      q = q + moduli(:, j)
     end do
-  end subroutine add_divergence
-
-  !> [grad S]^T q with sum v q = (sum v c/Jbar : I + 2 sum v sigma)/n. Source: theory.md (14).
-  pure function coupling_force(grad_shape, moduli, stress) result(force)
-    real(dp), intent(in) :: grad_shape(:, :) !! (n_dim, n_dim+1)
-    real(dp), intent(in) :: moduli(6, 6)     !! sum v c/Jbar
-    real(dp), intent(in) :: stress(6)        !! sum v sigma
-    real(dp) :: force(size(grad_shape, 1), size(grad_shape, 2))
-    real(dp) :: q(3, 3)
-    integer :: n_dim
-
-    n_dim = size(grad_shape, 1)
-    q = tensor_from_voigt((sum(moduli(:, 1:n_dim), dim=2) + 2.0_dp*stress)/real(n_dim, dp))
-    force = matmul(q(1:n_dim, 1:n_dim), grad_shape)
-  end function coupling_force
-
-  !> Adds the rank-one coupling (G^T Q) (t_P - tr g_e). Source: theory.md (13).
-  pure subroutine add_coupling(block, equation, coupling, divergence, grad_shape)
-    real(dp), intent(inout) :: block(:, :)      !! (n_eq, n_eq)
-    integer, intent(in)     :: equation(:, :)   !! (n_dim, n_dim+1)
-    real(dp), intent(in)    :: coupling(:, :)   !! (n_dim, n_dim+1)  G^T Q of the element
-    real(dp), intent(in)    :: divergence(:)    !! (n_eq)  t_P
-    real(dp), intent(in)    :: grad_shape(:, :) !! (n_dim, n_dim+1)
-    real(dp) :: row(size(divergence))
-    integer :: a, i, j
-
-    row = divergence
-    do a = 1, size(equation, 2)
-      row(equation(:, a)) = row(equation(:, a)) - grad_shape(:, a)
-    end do
-    do j = 1, size(row)
-      do a = 1, size(equation, 2)
-        do i = 1, size(equation, 1)
-          block(equation(i, a), j) = block(equation(i, a), j) + coupling(i, a)*row(j)
+    q = q/real(n_dim, dp)
+    do a = 1, n_dim + 1
+      do i = 1, n_dim
+        coupling(i, a) = 0.0_dp
+        do j = 1, n_dim
+          coupling(i, a) = coupling(i, a) + q(voigt_index(i, j))*grad_shape(j, a)
         end do
       end do
     end do
-  end subroutine add_coupling
+    do b = 1, n_dim + 1
+      do k = 1, n_dim
+        do a = 1, n_dim + 1
+          do i = 1, n_dim
+            stiffness(i, a, k, b) = stiffness(i, a, k, b) - coupling(i, a)*grad_shape(k, b)
+          end do
+        end do
+      end do
+    end do
+  end subroutine couple
+
+  !> Adds the product of a column and a row.
+  pure subroutine add_product(block, column, row, n)
+    integer, intent(in)     :: n
+    real(dp), intent(inout) :: block(n, n)
+    real(dp), intent(in)    :: column(n), row(n)
+    integer :: j
+
+    do j = 1, n
+      block(:, j) = block(:, j) + column*row(j)
+    end do
+  end subroutine add_product
 
 end module mpm_assembly
