@@ -7,7 +7,7 @@ module mpm_restart_load
   use mpm_expectations, only: collect_expectations, verdict_t
   use mpm_increments, only: resume_step
   use mpm_kinds, only: dp
-  use mpm_material_points, only: group_points
+  use mpm_material_points, only: group_points, open_trial
   use mpm_mesh, only: build_geometry
   use mpm_model, only: model_t
   use mpm_model_signature, only: check_model
@@ -110,7 +110,7 @@ contains
       body%points = analysis%kept%points
       call group_points(body%points, body%mesh%n_el)
       body%surface = analysis%kept%surface
-      analysis%system%trial = body%points%state
+      call open_trial(analysis%system%trial, body%points%state)
     end associate
     analysis%system%u_last = state%delta_u
     analysis%u_start = analysis%kept%u_start

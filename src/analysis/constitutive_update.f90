@@ -3,11 +3,14 @@ module mpm_constitutive_update
   use mpm_kinds, only: dp
   use mpm_kinematics, only: kinematics_t
   use mpm_material, only: material_t
-  use mpm_material_points, only: point_state_t, points_t
-  use mpm_stress_update, only: point_response_t, update_stress
+  use mpm_material_points, only: points_t, trial_state_t
+  use mpm_stress_batch, only: batch_size, put_point, set_material, stress_batch_t, update_batch, &
+    voigt_pair
   implicit none
   private
   public :: element_sums_t, allocate_sums, update_points
+
+  integer, parameter :: chunk_size = 64 !! elements that a thread takes at a time
 
   !> Sums over the points of an element, weighted with the current volume v_p.
   type :: element_sums_t
@@ -17,7 +20,18 @@ module mpm_constitutive_update
     integer, allocatable :: failed_in(:)      !! (n_el)        first point whose update failed, 0 if none
     integer :: n_plastic = 0                  !! points that flow in this update
     integer :: failed_point = 0               !! first point whose update failed, 0 if none
+    logical :: has_moduli = .false.           !! moduli belong to this update
   end type element_sums_t
+
+  !> Points of a chunk of elements on their way through the stress update.
+  type :: passage_t
+    type(stress_batch_t) :: batch
+    integer  :: n = 0                 !! points in the batch
+    integer  :: point(batch_size) = 0 !! which ones
+    integer  :: element = 0           !! element whose points are being summed, 0 before the first
+    real(dp) :: stress(6) = 0.0_dp    !! sum of its points so far [force length]
+    real(dp) :: moduli(21) = 0.0_dp   !! sum of its points so far, upper triangle [force length]
+  end type passage_t
 
 contains
 
@@ -32,19 +46,24 @@ contains
   end subroutine allocate_sums
 
   !> Trial state of all points in the active elements and the element sums.
-  !! v sigma = (v_n/Jbar_n) tau because both v and Jbar grow by det dFbar. Source: theory.md (6)-(12).
-  subroutine update_points(trial, sums, points, materials, kinematics, element)
-    type(point_state_t), intent(inout)  :: trial        !! allocated like points%state
+  !! v sigma = (v_n/Jbar_n) tau because both v and Jbar grow by det dFbar. Every point and every sum
+  !! is independent of the others: the result does not depend on the number of threads.
+  !! Source: theory.md (6)-(12).
+  subroutine update_points(trial, sums, points, materials, kinematics, element, with_moduli)
+    type(trial_state_t), intent(inout)  :: trial        !! allocated for the points
     type(element_sums_t), intent(inout) :: sums
     type(points_t), intent(in)          :: points       !! converged, grouped by element
     type(material_t), intent(in)        :: materials(:)
     type(kinematics_t), intent(in)      :: kinematics
     integer, intent(in)                 :: element(:)   !! active elements
-    integer :: i
+    logical, intent(in)                 :: with_moduli  !! .false.: stresses are enough
+    integer :: first, i
 
-    !$omp parallel do default(shared) schedule(static)
-    do i = 1, size(element)
-      call update_element(trial, sums, points, materials, kinematics, element(i))
+    sums%has_moduli = with_moduli
+    !$omp parallel do default(shared) schedule(dynamic)
+    do first = 1, size(element), chunk_size
+      call update_chunk(trial, sums, points, materials, kinematics, &
+                        element(first:min(first + chunk_size - 1, size(element))))
     end do
     !$omp end parallel do
     sums%n_plastic = sum(sums%plastic_in(element))
@@ -55,42 +74,89 @@ contains
     end do
   end subroutine update_points
 
-  !> The points of one element, in the order of points%order.
-  pure subroutine update_element(trial, sums, points, materials, kinematics, e)
-    type(point_state_t), intent(inout)  :: trial
+  !> The points of some elements, batch by batch in the order of points%order.
+  pure subroutine update_chunk(trial, sums, points, materials, kinematics, element)
+    type(trial_state_t), intent(inout)  :: trial
     type(element_sums_t), intent(inout) :: sums
     type(points_t), intent(in)          :: points
     type(material_t), intent(in)        :: materials(:)
     type(kinematics_t), intent(in)      :: kinematics
-    integer, intent(in)                 :: e !! element
-    type(point_response_t) :: response
-    real(dp) :: stress(6), moduli(6, 6), factor
-    integer :: i, p
+    integer, intent(in)                 :: element(:) !! active elements
+    type(passage_t) :: passage
+    integer :: e, i, j, p
 
-    sums%plastic_in(e) = 0
-    sums%failed_in(e) = 0
-    stress = 0.0_dp
-    moduli = 0.0_dp
-    do i = points%first(e), points%first(e + 1) - 1
-      p = points%order(i)
-      call update_stress(response, materials(points%material(p)), kinematics%disp_grad_bar(:, :, e), &
-                         points%state%left_cauchy_green_e_m1(:, p), points%state%hardening(1, p))
-      if (response%failed) then
-        sums%failed_in(e) = p
-        exit
-      end if
-      if (response%flows) sums%plastic_in(e) = sums%plastic_in(e) + 1
-      factor = points%volume(p)/points%state%jacobian_bar(p)
-      stress = stress + factor*response%kirchhoff
-      moduli = moduli + factor*response%moduli
-      trial%strain_e(:, p) = response%strain_e
-      trial%left_cauchy_green_e_m1(:, p) = response%left_cauchy_green_e_m1
-      trial%hardening(1, p) = response%plastic_strain
-      trial%jacobian_bar(p) = points%state%jacobian_bar(p)*(1.0_dp + kinematics%delta_j_bar_m1(e))
-      trial%cauchy(:, p) = response%kirchhoff/trial%jacobian_bar(p)
+    do j = 1, size(element)
+      e = element(j)
+      sums%plastic_in(e) = 0
+      sums%failed_in(e) = 0
+      do i = points%first(e), points%first(e + 1) - 1
+        p = points%order(i)
+        passage%n = passage%n + 1
+        passage%point(passage%n) = p
+        call put_point(passage%batch, passage%n, kinematics%disp_grad_bar(:, :, e), &
+                       points%state%left_cauchy_green_e_m1(:, p), points%state%hardening(1, p))
+        call set_material(passage%batch, passage%n, points%material(p), &
+                          materials(points%material(p)))
+        if (passage%n == batch_size) call pass(passage, trial, sums, points, materials)
+      end do
     end do
-    sums%stress(:, e) = stress
-    sums%moduli(:, :, e) = moduli
-  end subroutine update_element
+    if (passage%n > 0) call pass(passage, trial, sums, points, materials)
+    call close_sum(passage, sums)
+  end subroutine update_chunk
+
+  !> Updates a batch, notes the trial states and adds to the sums, point by point.
+  pure subroutine pass(passage, trial, sums, points, materials)
+    type(passage_t), intent(inout)      :: passage !! out: batch empty
+    type(trial_state_t), intent(inout)  :: trial
+    type(element_sums_t), intent(inout) :: sums
+    type(points_t), intent(in)          :: points
+    type(material_t), intent(in)        :: materials(:)
+    real(dp) :: factor
+    integer :: e, l, p
+
+    associate (batch => passage%batch)
+      ! Nothing happens in places without a point.
+      batch%disp_grad_bar(passage%n + 1:, :, :) = 0.0_dp
+      batch%cg_e_m1(passage%n + 1:, :) = 0.0_dp
+      call update_batch(batch, materials, sums%has_moduli)
+      do l = 1, passage%n
+        p = passage%point(l)
+        e = points%element(p)
+        if (e /= passage%element) then
+          call close_sum(passage, sums)
+          passage%element = e
+        end if
+        if (batch%failed(l)) then
+          if (sums%failed_in(e) == 0) sums%failed_in(e) = p
+          cycle
+        end if
+        if (batch%flows(l)) sums%plastic_in(e) = sums%plastic_in(e) + 1
+        factor = points%volume(p)/points%state%jacobian_bar(p)
+        passage%stress = passage%stress + factor*batch%kirchhoff(l, :)
+        if (sums%has_moduli) passage%moduli = passage%moduli + factor*batch%moduli(l, :)
+        trial%left_cauchy_green_e_m1(:, p) = batch%cg_e_m1(l, :)
+        trial%hardening(1, p) = batch%plastic_strain(l)
+      end do
+    end associate
+    passage%n = 0
+  end subroutine pass
+
+  !> Writes the sums of an element whose points have all been added, and begins anew.
+  pure subroutine close_sum(passage, sums)
+    type(passage_t), intent(inout)      :: passage
+    type(element_sums_t), intent(inout) :: sums
+    integer :: v, w
+
+    if (passage%element == 0) return
+    sums%stress(:, passage%element) = passage%stress
+    passage%stress = 0.0_dp
+    if (.not. sums%has_moduli) return
+    do w = 1, 6
+      do v = 1, 6
+        sums%moduli(v, w, passage%element) = passage%moduli(voigt_pair(v, w))
+      end do
+    end do
+    passage%moduli = 0.0_dp
+  end subroutine close_sum
 
 end module mpm_constitutive_update

@@ -10,7 +10,7 @@ module mpm_equilibrium
   use mpm_kinematics, only: find_largest_stretch
   use mpm_linear_solver, only: factorize, solve, solver_memory, solver_not_finite, solver_ok
   use mpm_nodal_frames, only: in_local_axes, part_along
-  use mpm_system, only: body_t, evaluate, evaluation_inverted, evaluation_ok, system_t
+  use mpm_system, only: body_t, evaluate, evaluate_force, evaluation_inverted, evaluation_ok, system_t
   implicit none
   private
   public :: find_equilibrium, outcome_text
@@ -123,7 +123,7 @@ contains
     report%worst_point = 0
     newton%moved = .false.
     system%u = 0.0_dp
-    call measure(newton, system, report, body, 0)
+    call measure(newton, system, report, body, 0, .true.)
     report%at_rest = report%residual(0)
   end subroutine start_at_rest
 
@@ -142,7 +142,7 @@ contains
     call gather_free(system%dofs, system%u_last, newton%x)
     system%u = system%dofs%prescribed
     call add_solution(system%dofs, system%guess_ratio*newton%x, system%u)
-    call measure(newton, system, report, body, 0)
+    call measure(newton, system, report, body, 0, .true.)
     newton%moved = report%outcome == outcome_converged .and. report%residual(0) <= near
     if (newton%moved .and. all(abs(system%dofs%prescribed) <= 0.0_dp)) &
       newton%moved = newton%norm < norm_at_rest
@@ -197,6 +197,7 @@ contains
     integer :: outcome
 
     report%n_iterations = iteration
+    if (.not. system%sums%has_moduli) call measure(newton, system, report, body, iteration - 1, .true.)
     call cpu_time(clock(1))
     call assemble_tangent(system%tangent, system%map, body%mesh, body%patches, system%kinematics, system%sums)
     call add_ghost_tangent(system%tangent, system%map, system%ghost)
@@ -254,7 +255,8 @@ contains
       system%u = u
       call add_solution(system%dofs, length*newton%x, system%u)
       report%outcome = outcome_converged
-      call measure(newton, system, report, body, iteration)
+      ! Shorter steps are tried by their residual alone; the one taken gets its moduli later.
+      call measure(newton, system, report, body, iteration, n_halved == 0)
       report%backtracks(iteration) = n_halved
       if (iteration == 1 .and. .not. newton%moved) return
       if (report%outcome == outcome_converged) then
@@ -265,18 +267,23 @@ contains
     if (report%outcome == outcome_converged) report%outcome = outcome_stagnated
   end subroutine step
 
-  !> Evaluates forces at system%u and the residual there.
-  subroutine measure(newton, system, report, body, iteration)
+  !> Evaluates forces at system%u and the residual there, with what a tangent needs or without.
+  subroutine measure(newton, system, report, body, iteration, with_moduli)
     type(newton_state_t), intent(inout)  :: newton
     type(system_t), intent(inout)        :: system
     type(newton_report_t), intent(inout) :: report
     type(body_t), intent(in)             :: body
     integer, intent(in)                  :: iteration
+    logical, intent(in)                  :: with_moduli
     real(dp) :: before(2)
     integer :: outcome
 
     before = system%seconds
-    call evaluate(system, body, outcome)
+    if (with_moduli) then
+      call evaluate(system, body, outcome)
+    else
+      call evaluate_force(system, body, outcome)
+    end if
     ! The evaluation before the first correction belongs to the first iteration.
     associate (seconds => report%seconds(1:2, max(iteration, 1)))
       seconds = seconds + (system%seconds - before)

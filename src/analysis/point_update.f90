@@ -1,7 +1,10 @@
 !> End of an increment: the trial state is accepted and the points move.
 module mpm_point_update
   use mpm_kinds, only: dp
+  use mpm_material, only: material_t
   use mpm_material_points, only: points_t
+  use mpm_mesh, only: mesh_t
+  use mpm_stress_batch, only: batch_size, set_material, strain_of_batch, stress_batch_t
   use mpm_surface_points, only: move_surface_points
   use mpm_system, only: body_t, system_t
   use mpm_tensor, only: identity
@@ -11,31 +14,75 @@ module mpm_point_update
 
 contains
 
-  !> Positions, displacements, F = dF F, v = det(dFbar) v_n, and the trial state become the
-  !! converged ones. Source: theory.md (10), (16).
+  !> Positions, displacements, F = dF F, v = det(dFbar) v_n, and the trial state becomes the
+  !! converged one, now with strain and stress. Source: theory.md (7), (9), (10), (16).
   subroutine accept_points(body, system)
     type(body_t), intent(inout) :: body      !! points are updated, the mesh is not
     type(system_t), intent(in)  :: system    !! converged
-    integer :: i, p, e
-    real(dp) :: move(body%mesh%n_dim)
+    integer :: first, last
 
-    associate (points => body%points)
-      !$omp parallel do default(shared) private(p, e, move)
-      do i = 1, size(points%order)
-        p = points%order(i)
-        e = points%element(p)
-        move = matmul(system%u(:, body%mesh%node(:, e)), points%shape(:, p))
-        points%x(:, p) = points%x(:, p) + move
-        points%u(:, p) = points%u(:, p) + move
-        points%def_grad(:, :, p) = matmul(identity + system%kinematics%disp_grad(:, :, e), &
-                                          points%def_grad(:, :, p))
-        points%volume(p) = points%volume(p)*(1.0_dp + system%kinematics%delta_j_bar_m1(e))
-      end do
-      !$omp end parallel do
-      points%state = system%trial
-    end associate
+    !$omp parallel do default(shared) private(last)
+    do first = 1, size(body%points%order), batch_size
+      last = min(first + batch_size - 1, size(body%points%order))
+      call move_points(body%points, body%mesh, system, first, last)
+      call accept_states(body%points, body%material, system, first, last)
+    end do
+    !$omp end parallel do
     call move_surface_points(body%surface, body%mesh, system%u)
   end subroutine accept_points
+
+  !> Motion and volumes of some points.
+  pure subroutine move_points(points, mesh, system, first, last)
+    type(points_t), intent(inout) :: points
+    type(mesh_t), intent(in)      :: mesh
+    type(system_t), intent(in)    :: system      !! converged
+    integer, intent(in)           :: first, last !! range of points%order
+    real(dp) :: move(mesh%n_dim)
+    integer  :: e, i, p
+
+    do i = first, last
+      p = points%order(i)
+      e = points%element(p)
+      move = matmul(system%u(:, mesh%node(:, e)), points%shape(:, p))
+      points%x(:, p) = points%x(:, p) + move
+      points%u(:, p) = points%u(:, p) + move
+      points%def_grad(:, :, p) = matmul(identity + system%kinematics%disp_grad(:, :, e), &
+                                        points%def_grad(:, :, p))
+      points%volume(p) = points%volume(p)*(1.0_dp + system%kinematics%delta_j_bar_m1(e))
+    end do
+  end subroutine move_points
+
+  !> Trial states of a batch of points, and the strains and stresses that belong to them.
+  pure subroutine accept_states(points, materials, system, first, last)
+    type(points_t), intent(inout) :: points
+    type(material_t), intent(in)  :: materials(:)
+    type(system_t), intent(in)    :: system      !! converged
+    integer, intent(in)           :: first, last !! range of points%order, at most batch_size
+    type(stress_batch_t) :: batch
+    real(dp) :: strain(batch_size, 6)
+    integer  :: i, l, p
+
+    do i = first, last
+      p = points%order(i)
+      l = i - first + 1
+      batch%cg_e_m1(l, :) = system%trial%left_cauchy_green_e_m1(:, p)
+      batch%plastic_strain(l) = system%trial%hardening(1, p)
+      call set_material(batch, l, points%material(p), materials(points%material(p)))
+    end do
+    call strain_of_batch(strain, batch)
+    associate (state => points%state)
+      do i = first, last
+        p = points%order(i)
+        l = i - first + 1
+        state%left_cauchy_green_e_m1(:, p) = system%trial%left_cauchy_green_e_m1(:, p)
+        state%hardening(:, p) = system%trial%hardening(:, p)
+        state%jacobian_bar(p) = state%jacobian_bar(p) &
+                                *(1.0_dp + system%kinematics%delta_j_bar_m1(points%element(p)))
+        state%strain_e(:, p) = strain(l, :)
+        state%cauchy(:, p) = batch%kirchhoff(l, :)/state%jacobian_bar(p)
+      end do
+    end associate
+  end subroutine accept_states
 
   !> The point with a host that has moved farthest since its displacements were noted.
   pure subroutine find_largest_move(point, distance, points, u_before)

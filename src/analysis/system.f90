@@ -10,14 +10,14 @@ module mpm_system
   use mpm_kinematics, only: allocate_kinematics, compute_kinematics, kinematics_t
   use mpm_linear_solver, only: free_solver, linear_solver_t
   use mpm_material, only: material_t
-  use mpm_material_points, only: point_state_t, points_t
+  use mpm_material_points, only: open_trial, points_t, trial_state_t
   use mpm_mesh, only: mesh_t
   use mpm_patches, only: patches_t
   use mpm_sparsity, only: assembly_map_t
   use mpm_surface_points, only: surface_points_t
   implicit none
   private
-  public :: system_t, body_t, evaluate, find_active, free_system, open_system
+  public :: system_t, body_t, evaluate, evaluate_force, find_active, free_system, open_system
   public :: evaluation_ok, evaluation_inverted, evaluation_failed
 
   integer, parameter :: evaluation_ok = 0       !! forces are there
@@ -47,7 +47,7 @@ module mpm_system
     type(dof_map_t)       :: dofs
     type(kinematics_t)    :: kinematics
     type(element_sums_t)  :: sums
-    type(point_state_t)   :: trial
+    type(trial_state_t)   :: trial
     type(ghost_penalty_t) :: ghost          !! faces of this active set
     type(assembly_map_t)  :: map
     type(csc_matrix_t)    :: tangent
@@ -73,7 +73,7 @@ contains
     call allocate_kinematics(system%kinematics, body%mesh)
     call allocate_sums(system%sums, body%mesh%n_el)
     call open_ghost(system%ghost, body%mesh%n_dim)
-    system%trial = body%points%state
+    call open_trial(system%trial, body%points%state)
   end subroutine open_system
 
   !> Releases the factors of the linear solver and the tangent: what is large.
@@ -95,10 +95,30 @@ contains
     system%element = pack([(e, e=1, size(system%active))], system%active)
   end subroutine find_active
 
-  !> Trial state, element sums and internal force at the displacement system%u.
+  !> Trial state, element sums and internal force at the displacement system%u: what a tangent
+  !! needs.
   subroutine evaluate(system, body, outcome)
     type(system_t), intent(inout) :: system
     type(body_t), intent(in)      :: body
+    integer, intent(out)          :: outcome !! evaluation_*
+
+    call evaluate_sums(system, body, .true., outcome)
+  end subroutine evaluate
+
+  !> The same without moduli: for a step of which only the residual is asked.
+  subroutine evaluate_force(system, body, outcome)
+    type(system_t), intent(inout) :: system
+    type(body_t), intent(in)      :: body
+    integer, intent(out)          :: outcome !! evaluation_*
+
+    call evaluate_sums(system, body, .false., outcome)
+  end subroutine evaluate_force
+
+  !> Kinematics, stresses, sums and internal force.
+  subroutine evaluate_sums(system, body, with_moduli, outcome)
+    type(system_t), intent(inout) :: system
+    type(body_t), intent(in)      :: body
+    logical, intent(in)           :: with_moduli
     integer, intent(out)          :: outcome !! evaluation_*
     real(dp) :: clock(3)
 
@@ -112,7 +132,7 @@ contains
     call project_onto_patches(system%kinematics, body%mesh, body%patches, system%active)
     call cpu_time(clock(2))
     call update_points(system%trial, system%sums, body%points, body%material, system%kinematics, &
-                       system%element)
+                       system%element, with_moduli)
     system%worst_point = system%sums%failed_point
     if (system%worst_point > 0) then
       outcome = evaluation_failed
@@ -123,6 +143,6 @@ contains
     call add_ghost_force(system%f_int, system%ghost, system%u)
     call cpu_time(clock(3))
     system%seconds = system%seconds + (clock(2:3) - clock(1:2))
-  end subroutine evaluate
+  end subroutine evaluate_sums
 
 end module mpm_system

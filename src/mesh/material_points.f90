@@ -8,9 +8,9 @@ module mpm_material_points
   use mpm_text, only: integer_text, real_text
   implicit none
   private
-  public :: points_t, point_state_t, n_hardening
-  public :: allocate_points, allocate_state, bytes_of_points, copy_state, generate_points
-  public :: group_points
+  public :: points_t, point_state_t, trial_state_t, n_hardening
+  public :: allocate_points, allocate_state, bytes_of_points, generate_points
+  public :: group_points, open_trial
   public :: centre_of_mass, nearest_point, total_mass, total_volume
   public :: status_inside, status_extrapolated, status_frozen, status_removed
 
@@ -20,7 +20,7 @@ module mpm_material_points
   integer, parameter :: status_frozen = 2       !! lost, kept in the file, without host
   integer, parameter :: status_removed = 3      !! lost and taken out, without host
 
-  !> Everything of a point that changes during Newton: one converged, one trial copy.
+  !> The converged state of the points.
   !! Voigt order 11, 22, 33, 12, 23, 13, tensor components (never engineering shear).
   type :: point_state_t
     real(dp), allocatable :: strain_e(:, :)    !! (6, n)  elastic logarithmic strain [-]
@@ -29,6 +29,12 @@ module mpm_material_points
     real(dp), allocatable :: cauchy(:, :)      !! (6, n)  Cauchy stress [force/length^2]
     real(dp), allocatable :: jacobian_bar(:)   !! (n)     product of all det dFbar [-]
   end type point_state_t
+
+  !> What changes during Newton; strain and stress follow from it when an increment is accepted.
+  type :: trial_state_t
+    real(dp), allocatable :: left_cauchy_green_e_m1(:, :) !! (6, n)  b_e - 1 [-]
+    real(dp), allocatable :: hardening(:, :)   !! (n_hardening, n)  accumulated plastic strain [-]
+  end type trial_state_t
 
   !> The points; item index last.
   type :: points_t
@@ -206,17 +212,14 @@ contains
     allocate (state%jacobian_bar(n), source=1.0_dp)
   end subroutine allocate_state
 
-  !> Copies a state into one that is already allocated, without new memory.
-  pure subroutine copy_state(target, source)
-    type(point_state_t), intent(inout) :: target !! state of the same number of points, overwritten
-    type(point_state_t), intent(in)    :: source !! state to copy
+  !> A trial state equal to the converged one.
+  pure subroutine open_trial(trial, state)
+    type(trial_state_t), intent(out) :: trial
+    type(point_state_t), intent(in)  :: state !! converged
 
-    target%strain_e(:, :) = source%strain_e
-    target%left_cauchy_green_e_m1(:, :) = source%left_cauchy_green_e_m1
-    target%hardening(:, :) = source%hardening
-    target%cauchy(:, :) = source%cauchy
-    target%jacobian_bar(:) = source%jacobian_bar
-  end subroutine copy_state
+    trial%left_cauchy_green_e_m1 = state%left_cauchy_green_e_m1
+    trial%hardening = state%hardening
+  end subroutine open_trial
 
   !> Groups the points that have a host by it, in ascending order within an element.
   pure subroutine group_points(points, n_el)

@@ -7,19 +7,21 @@ module small_bodies
   use mpm_kinds, only: dp
   use mpm_linear_solver, only: analyse
   use mpm_material, only: law_elastic, law_von_mises, material_t
-  use mpm_material_points, only: generate_points
+  use mpm_material_points, only: generate_points, points_t
   use mpm_mesh, only: build_geometry, mesh_t
   use mpm_mesh_generator, only: box_settings_t, generate_box
   use mpm_nodal_frames, only: nodal_frames_t
   use mpm_parent_mesh, only: parent_mesh_t
   use mpm_parent_split, only: split_parents
   use mpm_patches, only: patches_from_parents, patches_of_single_elements
+  use mpm_point_update, only: accept_points
   use mpm_sparsity, only: build_pattern
   use mpm_system, only: body_t, find_active, system_t
   use random_tensors, only: random_values
   implicit none
   private
-  public :: affine, elastic, fill, hold, incline, make_body, move_mesh_along, on_boundary, plastic
+  public :: accepted_points, affine, elastic, fill, hold, incline, make_body, move_mesh_along
+  public :: on_boundary, plastic
 
 contains
 
@@ -165,6 +167,18 @@ contains
                        system%active, system%ghost%node)
     call analyse(system%solver, system%tangent, i)
   end subroutine incline
+
+  !> The points as they would be if the trial state were accepted.
+  function accepted_points(body, system) result(points)
+    type(body_t), intent(in)   :: body
+    type(system_t), intent(in) :: system !! evaluated
+    type(points_t) :: points
+    type(body_t) :: next
+
+    next = body
+    call accept_points(next, system)
+    points = next%points
+  end function accepted_points
 
   !> Moves all nodes of the mesh; points keep their hosts and shape functions.
   subroutine move_mesh_along(body, u)
