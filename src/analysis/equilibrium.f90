@@ -85,11 +85,13 @@ contains
     type(newton_state_t) :: newton
     real(dp) :: seconds(5)
     integer  :: n_given_up
+    logical  :: predicts
 
     call open_report(report, settings%max_iterations)
     allocate (newton%residual(system%dofs%n), newton%x(system%dofs%n))
-    call start_at_rest(newton, system, report, body)
-    if (settings%prediction .and. system%guess_ratio > 0.0_dp) then
+    predicts = settings%prediction .and. system%guess_ratio > 0.0_dp
+    call start_at_rest(newton, system, report, body, .not. predicts)
+    if (predicts) then
       call predict(newton, system, report, body)
       if (report%predicted) call iterate(newton, system, report, body, settings)
     end if
@@ -100,7 +102,7 @@ contains
       call open_report(report, settings%max_iterations)
       report%n_given_up = n_given_up
       report%seconds(:, 1) = seconds
-      call start_at_rest(newton, system, report, body)
+      call start_at_rest(newton, system, report, body, .true.)
     end if
     if (.not. report%predicted) call iterate(newton, system, report, body, settings)
     if (report%outcome == outcome_converged) call judge_stretch(report, system, settings)
@@ -112,18 +114,19 @@ contains
   end subroutine find_equilibrium
 
   !> No displacement: the prescribed one comes with the first correction.
-  subroutine start_at_rest(newton, system, report, body)
+  subroutine start_at_rest(newton, system, report, body, with_moduli)
     type(newton_state_t), intent(inout)  :: newton
     type(system_t), intent(inout)        :: system
     type(newton_report_t), intent(inout) :: report
     type(body_t), intent(in)             :: body
+    logical, intent(in)                  :: with_moduli !! a correction follows
 
     report%outcome = outcome_converged
     report%worst_element = 0
     report%worst_point = 0
     newton%moved = .false.
     system%u = 0.0_dp
-    call measure(newton, system, report, body, 0, .true.)
+    call measure(newton, system, report, body, 0, with_moduli)
     report%at_rest = report%residual(0)
   end subroutine start_at_rest
 
@@ -147,7 +150,7 @@ contains
     if (newton%moved .and. all(abs(system%dofs%prescribed) <= 0.0_dp)) &
       newton%moved = newton%norm < norm_at_rest
     report%predicted = newton%moved
-    if (.not. newton%moved) call start_at_rest(newton, system, report, body)
+    if (.not. newton%moved) call start_at_rest(newton, system, report, body, .true.)
   end subroutine predict
 
   !> Corrections until the residual is small or cannot be made so.

@@ -66,18 +66,23 @@ contains
     real(dp), intent(inout) :: apr(batch_size), aqr(batch_size) !! the other two entries
     real(dp), intent(inout) :: vector_p(batch_size, 3), vector_q(batch_size, 3) !! rotated with them
     real(dp), intent(in)    :: limit(batch_size)                !! what is negligible
-    real(dp) :: across, theta, t, c, s, tau, p, q
+    real(dp) :: across, d, p, q, root, s, signed, t, tau, theta, w
     integer  :: l
 
-    !$omp simd private(across, theta, t, c, s, tau, p, q)
+    !$omp simd private(across, d, p, q, root, s, signed, t, tau, theta, w)
     do l = 1, batch_size
       across = merge(apq(l), 0.0_dp, abs(apq(l)) > limit(l))
       theta = 0.5_dp*(aqq(l) - app(l))
-      t = abs(theta) + sqrt(theta*theta + across*across)
-      t = sign(across, across*theta)/merge(t, 1.0_dp, abs(across) > 0.0_dp)
-      c = 1.0_dp/sqrt(1.0_dp + t*t)
-      s = t*c
-      tau = s/(1.0_dp + c)
+      root = sqrt(theta*theta + across*across)
+      root = merge(root, 1.0_dp, abs(across) > 0.0_dp)
+      d = abs(theta) + root
+      w = sqrt(2.0_dp*root*d)
+      ! tan, sin and tan of the half angle as a/d, a/w and a/(w + d): one division less.
+      signed = sign(across, across*theta)
+      t = signed/d
+      tau = signed/(w*(w + d))
+      s = tau*(w + d)
+      tau = tau*w
       app(l) = app(l) - t*across
       aqq(l) = aqq(l) + t*across
       apq(l) = apq(l) - across
