@@ -7,7 +7,7 @@ module mpm_restart_load
   use mpm_expectations, only: collect_expectations, verdict_t
   use mpm_increments, only: resume_step
   use mpm_kinds, only: dp
-  use mpm_material_points, only: group_points, open_trial
+  use mpm_material_points, only: group_points, hand_over, open_trial
   use mpm_mesh, only: build_geometry
   use mpm_model, only: model_t
   use mpm_model_signature, only: check_model
@@ -107,7 +107,7 @@ contains
     associate (body => analysis%body)
       body%mesh%x = analysis%kept%mesh_x
       call build_geometry(body%mesh, inverted)
-      body%points = analysis%kept%points
+      call hand_over(analysis%kept%points, body%points)
       call group_points(body%points, body%mesh%n_el)
       body%surface = analysis%kept%surface
       call open_trial(analysis%system%trial, body%points%state)

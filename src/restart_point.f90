@@ -4,6 +4,7 @@ module mpm_restart_point
   use mpm_control_files, only: take_request
   use mpm_error, only: error_t, exit_interrupted, exit_terminated, make_error
   use mpm_interruption, only: received_signal, signal_interrupt
+  use mpm_material_points, only: hand_over
   use mpm_model, only: model_t
   use mpm_restart_file, only: is_restart_due, write_restart
   use mpm_restart_output, only: note_output
@@ -41,9 +42,10 @@ contains
 
     restart = analysis%kept
     restart%mesh_x = analysis%body%mesh%x
-    restart%points = analysis%body%points
+    call hand_over(analysis%body%points, restart%points)
     restart%surface = analysis%body%surface
     call write_restart(restart, model, output%paths%restart, output%paths%previous_restart, error)
+    call hand_over(restart%points, analysis%body%points)
     if (allocated(error)) return
     analysis%last_written = wall_time()
     call log_message(output%log, "  restart file "//output%paths%restart//" written at "// &

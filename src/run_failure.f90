@@ -112,8 +112,8 @@ contains
 
     call make_error(error, exit_lost_point, "error: "//integer_text(location%n_lost)// &
                     " material points left the mesh, the first is point "// &
-                    integer_text(body%points%id(location%first_lost))//" at ("// &
-                    place_text(body%points%x(:, location%first_lost))//"): expected a mesh "// &
+                    integer_text(location%first_lost)//" at ("// &
+                    place_text(body%points%x(:, body%points%place(location%first_lost)))//"): expected a mesh "// &
                     "that reaches further, or *LOST POINTS, ACTION=FREEZE or REMOVE"// &
                     place_of(schedule, model))
   end subroutine report_lost_point

@@ -14,6 +14,7 @@ module mpm_solve_job
   use mpm_limit_load, only: begin_watch, watch_increment
   use mpm_limit_note, only: note_limit_load
   use mpm_linear_solver, only: analyse, solver_memory, solver_ok
+  use mpm_material_points, only: points_t, sort_points
   use mpm_mesh_layout, only: lay_out_mesh
   use mpm_model, only: formulation_fbar, formulation_standard, model_t
   use mpm_model_signature, only: model_signature
@@ -63,7 +64,7 @@ contains
         call start_where_nodes_stand(model%step(i)%constraint, model%frames, state%node_u)
         call begin_step(analysis%schedule, i, model%step(i)%schedule, &
                         stop_times(model, i, analysis%schedule%total_time))
-        analysis%u_start = analysis%body%points%u
+        analysis%u_start = displacements(analysis%body%points)
         call begin_watch(analysis%watch)
       end if
       call solve_step(analysis, output, state, model, error)
@@ -99,7 +100,7 @@ contains
       call make_run_state(state, model%mesh%n_dim, model%mesh%n_node, model%mesh%n_el, &
                           model%patches%n)
       state%started = wall_time()
-      analysis%u_start = analysis%body%points%u
+      analysis%u_start = displacements(analysis%body%points)
     end if
     call find_active(analysis%system, analysis%body%points)
     if (output%metered .and. .not. loaded) call note_checkerboard(state, analysis%body)
@@ -108,6 +109,14 @@ contains
     end if
     call keep_point(analysis, output, state)
   end subroutine begin_run
+
+  !> Displacements of the points by their id.
+  pure function displacements(points) result(u)
+    type(points_t), intent(in) :: points
+    real(dp) :: u(size(points%u, 1), points%n) !! [length]
+
+    u = points%u(:, points%place)
+  end function displacements
 
   !> Step times that increments must hit in the step that a restart goes on in.
   pure function stops_of_restart(restart, model) result(times)
@@ -215,6 +224,7 @@ contains
       call keep_below_stretch(schedule, analysis%report%stretch, &
                               model%step(schedule%step)%newton%max_stretch)
       call locate_points(body%points, body%mesh, analysis%locator, model%location, location)
+      call sort_points(body%points)
       call find_active(system, body%points)
       call locate_surface_points(body%surface, body%mesh, system%active)
       call note_location(state, schedule, location)
@@ -240,6 +250,7 @@ contains
 
     body%mesh = model%mesh
     body%points = model%points
+    call sort_points(body%points)
     body%surface = model%surface
     body%material = model%material
     body%ghost_gamma = model%ghost_gamma

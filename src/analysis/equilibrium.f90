@@ -51,7 +51,7 @@ module mpm_equilibrium
     real(dp), allocatable :: seconds(:, :) !! (5, n_iterations)  CPU: kinematics, stress, assembly, factorisation, solve [s]
     integer :: worst_node = 0              !! node of the largest residual
     integer :: worst_element = 0           !! inverted element or element of a failed point, 0 if none
-    integer :: worst_point = 0             !! failed point, 0 if none
+    integer :: worst_point = 0             !! id of a failed point, 0 if none
     integer :: n_plastic = 0               !! points that flowed in the last evaluation
     integer, allocatable :: flowing(:)     !! (0:n_iterations)  points that flow
     real(dp) :: rcond = 1.0_dp             !! smallest over largest pivot, least one of all factors [-]
@@ -294,7 +294,7 @@ contains
     if (outcome /= evaluation_ok) then
       report%outcome = merge(outcome_inverted, outcome_material, outcome == evaluation_inverted)
       report%worst_element = system%worst_element
-      report%worst_point = system%worst_point
+      if (system%worst_point > 0) report%worst_point = body%points%id(system%worst_point)
       return
     end if
     ! Forces of nodes without unknowns too: they are the reactions.

@@ -72,12 +72,11 @@ contains
     type(mesh_t), intent(in)    :: mesh    !! initial mesh
     type(points_t), intent(in)  :: points  !! initial points with their hosts
     logical, allocatable :: loaded(:)
-    integer :: p
 
     allocate (loaded(0:mesh%n_el), source=.false.)
     loaded(load%item) = .true.
     loaded(0) = .false.
-    load%point = [(loaded(points%element(p)), p=1, points%n)]
+    load%point = loaded(points%element(points%place))
   end subroutine mark_points
 
   !> Nodal forces of a unit pressure or of unit tractions, an equal share to each node of a face,
@@ -165,14 +164,14 @@ contains
   !> Adds sum_p m_p S_a(x_p) g over the loaded points that have a host.
   pure subroutine add_weight(f, loaded, acceleration, mesh, points)
     real(dp), intent(inout) :: f(:, :)            !! (n_dim, n_node)  [force]
-    logical, intent(in)     :: loaded(:)          !! (n_point)  the load acts on this point
+    logical, intent(in)     :: loaded(:)          !! (n_point)  the load acts on the point with an id
     real(dp), intent(in)    :: acceleration(:)    !! (n_dim)  [length/time^2]
     type(mesh_t), intent(in)   :: mesh            !! connectivity
     type(points_t), intent(in) :: points          !! hosts, shape functions and masses
     integer :: a, node, p
 
     do p = 1, points%n
-      if (.not. loaded(p) .or. points%element(p) == 0) cycle
+      if (.not. loaded(points%id(p)) .or. points%element(p) == 0) cycle
       do a = 1, mesh%n_dim + 1
         node = mesh%node(a, points%element(p))
         f(:, node) = f(:, node) + points%mass(p)*points%shape(a, p)*acceleration

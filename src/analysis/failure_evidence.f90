@@ -68,7 +68,7 @@ contains
     residual = free_residual(system)
     select case (report%outcome)
     case (outcome_converged, outcome_material)
-      evidence%point = report%worst_point
+      if (report%worst_point > 0) evidence%point = body%points%place(report%worst_point)
       if (evidence%point > 0) evidence%element = body%points%element(evidence%point)
     case (outcome_iterations, outcome_singular, outcome_memory, outcome_not_finite)
       evidence%element = 0 ! the report may name an element of an earlier iteration

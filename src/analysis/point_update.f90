@@ -86,20 +86,21 @@ contains
 
   !> The point with a host that has moved farthest since its displacements were noted.
   pure subroutine find_largest_move(point, distance, points, u_before)
-    integer, intent(out)       :: point          !! of equal ones the first, 0 without points
+    integer, intent(out)       :: point          !! its id, of equal ones the first, 0 without points
     real(dp), intent(out)      :: distance       !! length of its way [length]
     type(points_t), intent(in) :: points         !! converged
-    real(dp), intent(in)       :: u_before(:, :) !! (n_dim, n)  displacements before [length]
+    real(dp), intent(in)       :: u_before(:, :) !! (n_dim, n)  displacements before, by id [length]
     real(dp) :: way
-    integer  :: p
+    integer  :: i, p
 
     point = 0
     distance = 0.0_dp
-    do p = 1, points%n
+    do i = 1, points%n
+      p = points%place(i)
       if (points%element(p) == 0) cycle
-      way = norm2(points%u(:, p) - u_before(:, p))
+      way = norm2(points%u(:, p) - u_before(:, i))
       if (point > 0 .and. way <= distance) cycle
-      point = p
+      point = i
       distance = way
     end do
   end subroutine find_largest_move

@@ -16,7 +16,7 @@ module mpm_history_columns
     character(8) :: quantity = ""         !! deck name
     integer :: component = 1
     integer, allocatable :: node(:)       !! nodes of the set; empty: a point
-    integer :: point = 0                  !! index of the point, 0: a set of nodes
+    integer :: point = 0                  !! id of the point, 0: a set of nodes
   end type history_column_t
 
 contains
@@ -116,7 +116,8 @@ contains
     do i = 1, size(columns)
       associate (column => columns(i))
         if (column%point > 0) then
-          at_point = point_values(points, patches, trim(column%quantity), column%point)
+          at_point = point_values(points, patches, trim(column%quantity), &
+                                  points%place(column%point))
           values(i) = at_point(column%component)
         else
           values(i) = sum(nodal_values(state, column%quantity, column%component, column%node))

@@ -139,10 +139,22 @@ contains
 
     n = n_field_components(name)
     allocate (values(n, size(items)))
-    do i = 1, size(items)
-      all_components = point_values(points, patches, name, items(i))
-      values(:, i) = all_components(:n)
-    end do
+    ! The large fields: without a look at the name for every point.
+    select case (name)
+    case ("S")
+      values(:, :) = points%state%cauchy(:, items)
+    case ("LE")
+      values(:, :) = points%state%strain_e(:, items)
+    case ("PEEQ")
+      values(1, :) = points%state%hardening(1, items)
+    case ("VOL")
+      values(1, :) = points%volume(items)
+    case default
+      do i = 1, size(items)
+        all_components = point_values(points, patches, name, items(i))
+        values(:, i) = all_components(:n)
+      end do
+    end select
   end function point_field
 
 end module mpm_point_fields

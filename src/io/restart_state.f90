@@ -150,6 +150,8 @@ contains
     integer, intent(in) :: n_el                        !! elements of the mesh
     type(error_t), allocatable, intent(inout) :: error !! exit_file
 
+    call exchange_order(record, points, error)
+    if (allocated(error)) return
     call exchange_reals(record, "point_x", shape(points%x), points%x, error)
     call exchange_reals(record, "point_u", shape(points%u), points%u, error)
     call exchange_integers(record, "point_element", shape(points%element), points%element, error)
@@ -175,6 +177,34 @@ contains
       call refuse_value(record, "point_volume", "volumes above 0", error)
     end if
   end subroutine exchange_points
+
+  !> Where the points stand: those read follow the points written, with what never changes.
+  subroutine exchange_order(record, points, error)
+    type(record_t), intent(in) :: record               !! open
+    type(points_t), intent(inout) :: points            !! written, or read
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+    integer, allocatable :: id(:)
+    logical, allocatable :: there(:)
+    integer :: p
+
+    id = points%id
+    call exchange_integers(record, "point_id", shape(id), id, error)
+    if (allocated(error) .or. record%writing) return
+    allocate (there(points%n), source=.false.)
+    do p = 1, points%n
+      if (id(p) >= 1 .and. id(p) <= points%n) there(id(p)) = .true.
+    end do
+    if (.not. all(there)) then
+      call refuse_value(record, "point_id", "every number up to that of points", error)
+      return
+    end if
+    ! The points of the model stand in the order of their ids.
+    points%id = id
+    points%place(id) = [(p, p=1, points%n)]
+    points%material = points%material(id)
+    points%mass = points%mass(id)
+    points%volume_0 = points%volume_0(id)
+  end subroutine exchange_order
 
   !> Where the nodes of constraints stood that were free before the step.
   subroutine exchange_starts(record, model, i_step, error)

@@ -99,7 +99,7 @@ contains
     integer :: i, n
 
     n = count(points%status /= status_removed)
-    kept = pack([(i, i=1, points%n)], points%status /= status_removed)
+    kept = pack(points%place, points%status(points%place) /= status_removed) ! by id
     if (n /= results%n_written) then
       call write_cells(results%points, vtk_vertex, reshape([(i, i=1, n)], [1, n]), n, error)
     end if

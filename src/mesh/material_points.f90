@@ -10,7 +10,7 @@ module mpm_material_points
   private
   public :: points_t, point_state_t, trial_state_t, n_hardening
   public :: allocate_points, allocate_state, bytes_of_points, generate_points
-  public :: group_points, open_trial
+  public :: group_points, hand_over, open_trial, sort_points
   public :: centre_of_mass, nearest_point, total_mass, total_volume
   public :: status_inside, status_extrapolated, status_frozen, status_removed
 
@@ -41,7 +41,8 @@ module mpm_material_points
     integer :: n = 0
     real(dp), allocatable :: x(:, :)        !! (n_dim, n)    position [length]
     real(dp), allocatable :: u(:, :)        !! (n_dim, n)    total displacement [length]
-    integer, allocatable  :: id(:)          !! (n)           constant over the run
+    integer, allocatable  :: id(:)          !! (n)           1..n, constant over the run
+    integer, allocatable  :: place(:)       !! (n)           where the point with an id stands
     integer, allocatable  :: element(:)     !! (n)           host element, 0 when frozen or removed
     integer, allocatable  :: material(:)    !! (n)           index of the material
     integer, allocatable  :: status(:)      !! (n)           status_*
@@ -120,7 +121,7 @@ contains
     integer, intent(in) :: n_dim !! 2 or 3
     integer, parameter :: reals_of_state = 3*6 + n_hardening + 1
 
-    n_bytes = int(n, ip)*(5*storage_size(n)/8 + (reals_of_state + 3*n_dim + 1 + 3 + 9) &
+    n_bytes = int(n, ip)*(6*storage_size(n)/8 + (reals_of_state + 3*n_dim + 1 + 3 + 9) &
                           *(storage_size(1.0_dp)/8))
   end function bytes_of_points
 
@@ -191,6 +192,7 @@ contains
 
     points%n = n
     points%id = [(p, p=1, n)]
+    points%place = points%id
     allocate (points%x(n_dim, n), points%u(n_dim, n), points%shape(n_dim + 1, n), source=0.0_dp)
     allocate (points%element(n), points%material(n), source=0)
     allocate (points%status(n), source=status_inside)
@@ -221,7 +223,8 @@ contains
     trial%hardening = state%hardening
   end subroutine open_trial
 
-  !> Groups the points that have a host by it, in ascending order within an element.
+  !> Groups the points that have a host by it, in ascending order of their id within an element: sums
+  !! over the points of an element do not depend on where the points stand.
   pure subroutine group_points(points, n_el)
     type(points_t), intent(inout) :: points !! in element, out first and order
     integer, intent(in)           :: n_el   !! elements of the mesh
@@ -248,7 +251,88 @@ contains
       points%order(next(e)) = p
       next(e) = next(e) + 1
     end do
+    do e = 1, n_el
+      call sort_by_id(points%order(points%first(e):points%first(e + 1) - 1), points%id)
+    end do
   end subroutine group_points
+
+  !> Sorts a few points, nearly in order, by insertion.
+  pure subroutine sort_by_id(order, id)
+    integer, intent(inout) :: order(:) !! points
+    integer, intent(in)    :: id(:)    !! (n)
+    integer :: i, k, p
+
+    do i = 2, size(order)
+      p = order(i)
+      do k = i - 1, 1, -1
+        if (id(order(k)) <= id(p)) exit
+        order(k + 1) = order(k)
+      end do
+      order(k + 1) = p
+    end do
+  end subroutine sort_by_id
+
+  !> Moves the points so that they stand in the order of their groups, those without a host last:
+  !! what is done to all points of an element then walks along the memory.
+  pure subroutine sort_points(points)
+    type(points_t), intent(inout) :: points !! grouped; every array in the new order
+    integer, allocatable :: order(:)
+    integer :: p
+
+    order = [points%order, pack([(p, p=1, points%n)], points%element == 0)]
+    associate (homeless => order(size(points%order) + 1:))
+      call sort_by_id(homeless, points%id)
+    end associate
+    if (all(order == [(p, p=1, points%n)])) return
+    points%x = points%x(:, order)
+    points%u = points%u(:, order)
+    points%id = points%id(order)
+    points%element = points%element(order)
+    points%material = points%material(order)
+    points%status = points%status(order)
+    points%shape = points%shape(:, order)
+    points%volume_0 = points%volume_0(order)
+    points%volume = points%volume(order)
+    points%mass = points%mass(order)
+    points%def_grad = points%def_grad(:, :, order)
+    associate (state => points%state)
+      state%strain_e = state%strain_e(:, order)
+      state%left_cauchy_green_e_m1 = state%left_cauchy_green_e_m1(:, order)
+      state%hardening = state%hardening(:, order)
+      state%cauchy = state%cauchy(:, order)
+      state%jacobian_bar = state%jacobian_bar(order)
+    end associate
+    points%place(points%id) = [(p, p=1, points%n)]
+    points%order = [(p, p=1, size(points%order))]
+  end subroutine sort_points
+
+  !> Gives the arrays of all points away without copying them.
+  pure subroutine hand_over(from, to)
+    type(points_t), intent(inout) :: from !! empty afterwards
+    type(points_t), intent(out)   :: to
+
+    to%n = from%n
+    from%n = 0
+    call move_alloc(from%x, to%x)
+    call move_alloc(from%u, to%u)
+    call move_alloc(from%id, to%id)
+    call move_alloc(from%place, to%place)
+    call move_alloc(from%element, to%element)
+    call move_alloc(from%material, to%material)
+    call move_alloc(from%status, to%status)
+    call move_alloc(from%shape, to%shape)
+    call move_alloc(from%volume_0, to%volume_0)
+    call move_alloc(from%volume, to%volume)
+    call move_alloc(from%mass, to%mass)
+    call move_alloc(from%def_grad, to%def_grad)
+    call move_alloc(from%first, to%first)
+    call move_alloc(from%order, to%order)
+    call move_alloc(from%state%strain_e, to%state%strain_e)
+    call move_alloc(from%state%left_cauchy_green_e_m1, to%state%left_cauchy_green_e_m1)
+    call move_alloc(from%state%hardening, to%state%hardening)
+    call move_alloc(from%state%cauchy, to%state%cauchy)
+    call move_alloc(from%state%jacobian_bar, to%state%jacobian_bar)
+  end subroutine hand_over
 
   !> Volume of all points that have a host (2-D: area).
   pure real(dp) function total_volume(points) result(volume)

@@ -30,7 +30,7 @@ module mpm_point_location
     integer :: n_crossed = 0      !! points whose host changed
     integer :: n_extrapolated = 0 !! points kept although just outside
     integer :: n_lost = 0         !! points newly lost
-    integer :: first_lost = 0     !! index of the first newly lost point, 0 if none
+    integer :: first_lost = 0     !! id of the first newly lost point, 0 if none
     integer :: n_walk_steps = 0   !! element tests spent in walks
     integer :: n_fallback = 0     !! points that needed the bins
     integer :: n_bin_tests = 0    !! element tests spent in bins
@@ -126,7 +126,7 @@ contains
     type(location_report_t), intent(inout) :: report      !! one loss more
 
     report%n_lost = report%n_lost + 1
-    if (report%first_lost == 0) report%first_lost = p
+    if (report%first_lost == 0 .or. points%id(p) < report%first_lost) report%first_lost = points%id(p)
     select case (settings%lost_action)
     case (lost_is_frozen)
       points%status(p) = status_frozen

@@ -113,6 +113,8 @@ contains
       body%patches = single_elements(mesh%n_el)
       if (.not. is_standard) body%patches = one_patch(mesh%n_el)
       allocate (points%material(n), source=1)
+      points%id = [(p, p=1, n)]
+      points%place = points%id
       allocate (points%u(mesh%n_dim, n), points%shape(mesh%n_dim + 1, n), source=0.0_dp)
       if (.not. allocated(points%x)) allocate (points%x, source=points%u)
       if (.not. allocated(points%def_grad)) allocate (points%def_grad(3, 3, n), source=0.0_dp)

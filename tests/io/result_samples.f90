@@ -76,6 +76,7 @@ contains
     points%def_grad(1, 2, 2) = 0.5_dp
     points%def_grad(3, 3, 2) = 2.0_dp
     points%id = [1, 2, 3]
+    points%place = points%id
     points%element = [1, 2, 0]
     points%material = [1, 1, 1]
     points%status = [status_inside, status_inside, status_frozen]
