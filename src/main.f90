@@ -4,6 +4,7 @@ program tessera
   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
   use mpm_command_line, only: command_line_t, get_arguments, help_text, read_command_line, version_text
   use mpm_error, only: error_t, exit_ok
+  use mpm_memory, only: keep_freed_memory
   use mpm_run_job, only: run_job
   use mpm_schema_json, only: schema_json
   use mpm_schema_markdown, only: schema_markdown
@@ -22,6 +23,7 @@ program tessera
   type(error_t), allocatable :: error
   character(:), allocatable :: arguments(:)
   integer :: exit_code
+  logical :: keeps
 
   exit_code = exit_ok
   call get_arguments(arguments)
@@ -36,6 +38,7 @@ program tessera
     else if (options%schema_markdown) then
       write (output_unit, "(a)") schema_markdown()
     else
+      keeps = keep_freed_memory() ! where not, it only takes longer
       if (options%threads > 0) call omp_set_num_threads(options%threads)
       options%threads = omp_get_max_threads()
       call run_job(exit_code, options, error)
