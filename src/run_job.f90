@@ -7,6 +7,7 @@ module mpm_run_job
   use mpm_diagnostics, only: diagnostics_t, to_error, warnings_text
   use mpm_error, only: error_t, exit_deck, exit_expectation, exit_file, &
                        exit_interrupted, exit_ok, exit_terminated, make_error
+  use mpm_estimate_job, only: estimate_job
   use mpm_expectations, only: n_failed_expectations, verdict_line
   use mpm_external_force, only: prepare_loads
   use mpm_increments, only: begin_step, schedule_t, start_increment
@@ -23,6 +24,7 @@ module mpm_run_job
   use mpm_restart_state, only: restart_t
   use mpm_result_paths, only: are_there_results, existing_results, make_folder, result_paths, &
                               result_paths_t
+  use mpm_run_estimate, only: estimate_text, run_estimate_t
   use mpm_run_log, only: log_message
   use mpm_run_memory, only: check_memory
   use mpm_run_output, only: close_output, open_output, run_output_t
@@ -54,7 +56,7 @@ contains
 
     exit_code = exit_ok
     call read_model(model, deck, warnings, options, error)
-    if (.not. allocated(error)) call check_memory(model, error)
+    if (.not. allocated(error)) call check_memory(model, options%max_memory, error)
     if (allocated(error)) return
     formulation = formulations(options, model)
     call make_run_info(info, deck%file(1)%path, deck%source, options%threads, options%quiet)
@@ -71,6 +73,8 @@ contains
       call choose_formulation(variant, formulation(i), size(options%compare) > 0)
       if (options%check_tangent) then
         call run_tangent_check(code, variant, error)
+      else if (options%estimate) then
+        call run_estimate(code, variant, options, error)
       else
         call run_formulation(code, variant, deck, info, options, error)
       end if
@@ -153,6 +157,7 @@ contains
     type(run_output_t)   :: output
     type(run_state_t)    :: state
     type(restart_t)      :: restart
+    type(run_estimate_t) :: estimate
     type(error_t), allocatable :: failure
     character(:), allocatable  :: folder
 
@@ -165,6 +170,10 @@ contains
           " belongs to this deck, "//place_text(restart)
         return
       end if
+    end if
+    if (options%max_memory > 0.0_dp .and. .not. restart%is_loaded) then
+      call estimate_job(estimate, model, options%max_memory, .false., error)
+      if (allocated(error)) return
     end if
     folder = options%output
     if (len(folder) == 0) folder = folder_of(options%deck)
@@ -182,7 +191,8 @@ contains
     restart%deck_signature = deck_signature(deck)
     restart%formulation = info%formulation
     restart%written_by = info%version//" "//info%git
-    call solve_job(output, state, model, restart, options%check, failure)
+    call solve_job(output, state, model, restart, options%check, options%max_memory, &
+                   failure)
     if (allocated(failure)) then
       exit_code = failure%code
       call log_message(output%log, failure%message, error)
@@ -254,6 +264,21 @@ contains
     end do
   end subroutine print_failures
 
+  !> --estimate: what the run will need.
+  subroutine run_estimate(exit_code, model, options, error)
+    integer, intent(out)         :: exit_code
+    type(model_t), intent(inout) :: model
+    type(command_line_t), intent(in) :: options
+    type(error_t), allocatable, intent(out) :: error !! also more memory than is allowed
+    type(run_estimate_t) :: estimate
+
+    exit_code = exit_ok
+    call estimate_job(estimate, model, options%max_memory, .true., error)
+    if (.not. allocated(estimate%job)) return
+    estimate%formulation = formulation_name(model%formulation)
+    write (output_unit, "(a)") estimate_text(estimate)
+  end subroutine run_estimate
+
   !> --check-tangent: the tangent of the first increment at a random state.
   subroutine run_tangent_check(exit_code, model, error)
     integer, intent(out)         :: exit_code !! exit_expectation when the tangent is wrong
@@ -270,7 +295,7 @@ contains
     call prepare_loads(model%step(1)%load, model%mesh, model%points)
     call begin_step(schedule, 1, model%step(1)%schedule, [real(dp) ::])
     call start_increment(schedule)
-    call prepare_increment(system, body, model, schedule, error)
+    call prepare_increment(system, body, model, schedule, 0.0_dp, error)
     if (.not. allocated(error)) call check_tangent(report, system, body)
     call free_system(system)
     if (allocated(error)) return

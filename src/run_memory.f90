@@ -1,37 +1,132 @@
-!> Whether there is memory for a run, before it begins.
+!> Memory of a run: whether there is enough before it begins, and whether it is allowed.
 module mpm_run_memory
   use mpm_error, only: error_t, exit_solver, make_error
+  use mpm_factor_estimate, only: factor_estimate
   use mpm_kinds, only: dp, ip
   use mpm_material_points, only: bytes_of_points
   use mpm_memory, only: has_room, megabytes
   use mpm_model, only: model_t
+  use mpm_run_estimate, only: expected_peak, memory_need_t, size_text
+  use mpm_system, only: system_t
   use mpm_text, only: integer_text, real_text
   implicit none
   private
-  public :: check_memory
+  public :: check_limit, check_memory, memory_of_run
+
+  integer, parameter :: copies = 3          !! of mesh and points: as read, as chosen, as they move
+  real(dp), parameter :: program = 3.0e7_dp !! code and libraries of the smallest run [bytes]
+  real(dp), parameter :: gigabyte = 1.0e9_dp
 
 contains
 
-  !> Room for the arrays over points and elements that a run adds to its model: two more copies of
+  !> Room for the arrays over points and elements that a run adds to its model: more copies of
   !! points and mesh, the trial state, kinematics and sums of the elements. The tangent is not among
   !! them: it says so itself when it does not fit.
-  subroutine check_memory(model, error)
+  subroutine check_memory(model, max_memory, error)
     type(model_t), intent(in) :: model               !! complete
+    real(dp), intent(in)      :: max_memory          !! allowed [GB], 0 = any
     type(error_t), allocatable, intent(out) :: error !! exit_solver
-    integer, parameter :: full_tensors = 2*9 + 4, sums = 6 + 36 + 1
+    type(memory_need_t) :: need
     integer(ip) :: n_bytes
-    integer :: gradients
+    character(:), allocatable :: what
 
-    associate (n_dim => model%mesh%n_dim, n_el => model%mesh%n_el)
-      gradients = n_dim*(n_dim + 1)
-      n_bytes = 3_ip*bytes_of_points(model%points%n, n_dim) &
-                + int(n_el, ip)*8*(2*(gradients + n_dim + 2) + full_tensors + gradients + sums)
-      if (has_room(n_bytes)) return
-      call make_error(error, exit_solver, "error: not enough memory for a run with "// &
-                      integer_text(model%points%n)//" material points and "//integer_text(n_el)// &
-                      " elements, about "//real_text(megabytes(real(n_bytes, dp)))// &
-                      " MB more are needed: expected a coarser mesh or fewer points per element")
-    end associate
+    need = memory_of_model(model)
+    what = "a run with "//integer_text(model%points%n)//" material points and "// &
+           integer_text(model%mesh%n_el)//" elements"
+    n_bytes = int(need%points + need%mesh, ip) - int(bytes_of_copy(model), ip)
+    if (.not. has_room(n_bytes)) then
+      call make_error(error, exit_solver, "error: not enough memory for "//what//", about "// &
+                      real_text(megabytes(real(n_bytes, dp)))//" MB more are needed: expected "// &
+                      "a coarser mesh or fewer points per element")
+    else if (exceeds(expected_peak(need), max_memory)) then
+      call refuse(error, expected_peak(need), max_memory, what//", without its equations,")
+    end if
   end subroutine check_memory
+
+  !> Refuses to go on when the run is expected to take more than is allowed.
+  subroutine check_limit(error, system, model, max_memory)
+    type(error_t), allocatable, intent(out) :: error !! exit_solver
+    type(system_t), intent(in) :: system             !! its pattern has been analysed
+    type(model_t), intent(in)  :: model
+    real(dp), intent(in)       :: max_memory         !! allowed [GB], 0 = any
+    real(dp) :: n_bytes
+
+    if (max_memory <= 0.0_dp) return
+    n_bytes = expected_peak(memory_of_run(system, model))
+    if (exceeds(n_bytes, max_memory)) then
+      call refuse(error, n_bytes, max_memory, "the run with "//integer_text(model%points%n)// &
+                  " material points and "//integer_text(system%dofs%n)//" equations")
+    end if
+  end subroutine check_limit
+
+  !> Whether a limit is passed.
+  pure logical function exceeds(n_bytes, max_memory)
+    real(dp), intent(in) :: n_bytes    !! needed [bytes]
+    real(dp), intent(in) :: max_memory !! allowed [GB], 0 = any
+
+    exceeds = max_memory > 0.0_dp .and. n_bytes > max_memory*gigabyte
+  end function exceeds
+
+  !> Makes the error.
+  pure subroutine refuse(error, n_bytes, max_memory, what)
+    type(error_t), allocatable, intent(out) :: error !! exit_solver
+    real(dp), intent(in)     :: n_bytes              !! needed [bytes]
+    real(dp), intent(in)     :: max_memory           !! allowed [GB]
+    character(*), intent(in) :: what                 !! that needs it
+
+    call make_error(error, exit_solver, "error: "//what//" needs about "//size_text(n_bytes)// &
+                    ", and --max-memory allows "//size_text(max_memory*gigabyte)//": expected a "// &
+                    "higher limit, a coarser mesh, fewer points per element or smaller patches")
+  end subroutine refuse
+
+  !> Memory that the whole run is expected to take.
+  pure function memory_of_run(system, model) result(need)
+    type(system_t), intent(in) :: system !! its pattern has been analysed
+    type(model_t), intent(in)  :: model
+    type(memory_need_t) :: need
+
+    need = memory_of_model(model)
+    associate (map => system%map, tangent => system%tangent)
+      need%pattern = 16.0_dp*real(tangent%nnz, dp) + 8.0_dp*real(tangent%n, dp)
+      if (allocated(map%position)) then
+        need%pattern = need%pattern + real(8*size(map%position, kind=ip), dp) &
+                       + real(4*size(map%node), dp) + real(4*size(map%element_local), dp)
+      end if
+      need%factors = factor_estimate(system%solver, real(tangent%nnz, dp))
+    end associate
+  end function memory_of_run
+
+  !> What points and mesh take, before anything is known of the equations.
+  pure function memory_of_model(model) result(need)
+    type(model_t), intent(in) :: model
+    type(memory_need_t) :: need
+    integer, parameter :: trial = 20, start = 1, full_tensors = 2*9 + 4, sums = 6 + 36 + 1
+
+    need%program = program
+    associate (n => model%points%n, n_dim => model%mesh%n_dim, n_el => model%mesh%n_el)
+      need%points = real(copies, dp)*real(bytes_of_points(n, n_dim), dp) &
+                    + 8.0_dp*real(trial + start*n_dim, dp)*real(n, dp)
+      need%mesh = real(copies, dp)*bytes_of_mesh(model) &
+                  + 8.0_dp*real(full_tensors + n_dim*(n_dim + 1) + sums, dp)*real(n_el, dp)
+      need%saving = real(bytes_of_points(n, n_dim), dp)
+    end associate
+  end function memory_of_model
+
+  !> One copy of points and mesh: the model itself.
+  pure real(dp) function bytes_of_copy(model) result(n_bytes)
+    type(model_t), intent(in) :: model
+
+    n_bytes = real(bytes_of_points(model%points%n, model%mesh%n_dim), dp) + bytes_of_mesh(model)
+  end function bytes_of_copy
+
+  !> One copy of the mesh and its patches.
+  pure real(dp) function bytes_of_mesh(model) result(n_bytes)
+    type(model_t), intent(in) :: model
+
+    associate (n_dim => model%mesh%n_dim)
+      n_bytes = real(model%mesh%n_el, dp)*real(8*n_dim*(n_dim + 1) + 8 + 8*(n_dim + 1) + 16, dp) &
+                + real(model%mesh%n_node, dp)*real(8*n_dim + 4, dp)
+    end associate
+  end function bytes_of_mesh
 
 end module mpm_run_memory

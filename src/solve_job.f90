@@ -27,6 +27,7 @@ module mpm_solve_job
   use mpm_restart_state, only: restart_t
   use mpm_run_failure, only: check_count, check_held, memory_error, place_of, record_failure, &
     refuse_mechanism, report_lost_point, shorten
+  use mpm_run_memory, only: check_limit
   use mpm_run_notes, only: note_attempt, note_equilibrium, note_location
   use mpm_run_output, only: run_output_t, write_attempt, write_increment, write_last_state
   use mpm_run_state, only: make_run_state, note_checkerboard, run_state_t
@@ -35,17 +36,18 @@ module mpm_solve_job
   use mpm_system, only: body_t, find_active, free_system, open_system, system_t
   implicit none
   private
-  public :: make_body, prepare_increment, solve_job
+  public :: make_body, prepare_increment, solve_job, stop_times
 
 contains
 
   !> Solves all steps of a model and hands every attempt and every increment to the output.
-  subroutine solve_job(output, state, model, restart, only_check, error)
+  subroutine solve_job(output, state, model, restart, only_check, max_memory, error)
     type(run_output_t), intent(inout) :: output        !! open
     type(run_state_t), intent(out)    :: state         !! after the last accepted increment
     type(model_t), intent(inout)      :: model         !! at time zero; its conditions are prepared
     type(restart_t), intent(inout)    :: restart       !! what run it is, perhaps loaded; emptied
     logical, intent(in)               :: only_check    !! write increment 0, do not solve
+    real(dp), intent(in)              :: max_memory    !! allowed [GB], 0 = any
     type(error_t), allocatable, intent(out) :: error   !! no convergence, lost point, file ...
     type(analysis_t) :: analysis
     integer :: i, first
@@ -53,6 +55,7 @@ contains
     call make_body(analysis%body, model)
     restart%model_signature = model_signature(model)
     call open_system(analysis%system, analysis%body)
+    analysis%max_memory = max_memory
     do i = 1, size(model%step)
       call prepare_loads(model%step(i)%load, model%mesh, model%points)
     end do
@@ -163,7 +166,8 @@ contains
                report => analysis%report)
       do while (.not. schedule%finished)
         call start_increment(schedule) ! size from the last outcome
-        call prepare_increment(system, body, model, schedule, error) ! unknowns, pattern, loads
+        ! Unknowns, pattern, loads.
+        call prepare_increment(system, body, model, schedule, analysis%max_memory, error)
         if (allocated(error)) then
           error%message = error%message//place_of(schedule, model)
           return
@@ -283,11 +287,12 @@ contains
 
   !> Active elements, unknowns, external force; pattern and symbolic analysis only when the
   !! active set or the constraints have changed.
-  subroutine prepare_increment(system, body, model, schedule, error)
+  subroutine prepare_increment(system, body, model, schedule, max_memory, error)
     type(system_t), intent(inout) :: system
     type(body_t), intent(in)      :: body
     type(model_t), intent(in)     :: model
     type(schedule_t), intent(in)  :: schedule
+    real(dp), intent(in)          :: max_memory !! allowed for the run [GB], 0 = any
     type(error_t), allocatable, intent(out) :: error
     type(time_increment_t) :: increment
     integer :: outcome
@@ -317,6 +322,8 @@ contains
       call memory_error(error, system, "analysis")
     else if (outcome /= solver_ok) then
       call make_error(error, exit_solver, "error: the pattern of the tangent cannot be analysed")
+    else
+      call check_limit(error, system, model, max_memory)
     end if
   end subroutine prepare_increment
 

@@ -361,9 +361,15 @@ COMMAND_LINES = {
         ["--check", "--check-tangent", "a.inp"],
         "--check and --check-tangent: expected one of them",
     ),
-    "estimate": (["--estimate", "a.inp"], "--estimate is not available in this version"),
+    "estimate and check": (
+        ["--estimate", "--check", "a.inp"],
+        "--check and --estimate: expected one of them",
+    ),
     "no restart file": (["a.inp", "--restart"], "--restart needs a value: expected --restart FILE"),
-    "memory": (["--max-memory", "2", "a.inp"], "--max-memory is not available in this version"),
+    "no memory": (
+        ["--max-memory", "0", "a.inp"],
+        "--max-memory is '0': expected gigabytes, a number > 0",
+    ),
 }
 
 

@@ -3,8 +3,9 @@ module mpm_command_line
   use mpm_build_info, only: build_type, compiler, git_revision, hdf5_version, metis_version, &
     umfpack_version, version
   use mpm_error, only: error_t, exit_usage, make_error
+  use mpm_kinds, only: dp
   use mpm_model, only: formulation_fbar, formulation_standard
-  use mpm_text, only: nearest_word, normalize_keyword, parse_integer
+  use mpm_text, only: nearest_word, normalize_keyword, parse_integer, parse_real
   implicit none
   private
   public :: command_line_t, get_arguments, read_command_line, help_text, version_text
@@ -18,6 +19,8 @@ module mpm_command_line
     logical :: force = .false.           !! overwrite earlier results
     logical :: check = .false.           !! do not solve
     logical :: check_tangent = .false.   !! tangent against finite differences
+    logical :: estimate = .false.        !! tell what a run needs, do not solve
+    real(dp) :: max_memory = 0.0_dp      !! memory that a run may take [GB], 0 = any
     integer, allocatable :: compare(:)   !! (n) formulation_* to run one after the other, or empty
     logical :: lax = .false.             !! what nothing uses is a warning
     logical :: quiet = .false.
@@ -34,7 +37,6 @@ module mpm_command_line
     character(13) :: name           !! long form
     character(8)  :: value          !! what its value is, empty = none
     character(64) :: meaning        !! line of the help
-    logical       :: later = .false. !! not in this version
   end type option_t
 
   type(option_t), parameter :: option(15) = [ &
@@ -43,6 +45,8 @@ module mpm_command_line
     option_t("f", "force", "", "overwrite earlier results of this job"), &
     option_t(" ", "check", "", "read, build, report, write increment 0, do not solve"), &
     option_t(" ", "check-tangent", "", "compare the tangent with finite differences, then stop"), &
+    option_t(" ", "estimate", "", "tell memory, time and size of the results, do not solve"), &
+    option_t(" ", "max-memory", "GB", "refuse a run that needs more memory"), &
     option_t(" ", "compare", "LIST", "run the formulations of a list, as standard,fbar"), &
     option_t(" ", "restart", "FILE", "go on from a restart file"), &
     option_t(" ", "lax", "", "only warn of a set, material or amplitude that is not used"), &
@@ -50,9 +54,7 @@ module mpm_command_line
     option_t("v", "verbose", "", "every Newton iteration on the terminal"), &
     option_t(" ", "schema", "[=FORM]", "print all keywords as json (default) or markdown"), &
     option_t(" ", "version", "", "print version, compiler and libraries"), &
-    option_t("h", "help", "", "print this help"), &
-    option_t(" ", "estimate", "", "memory and time of one factorisation", .true.), &
-    option_t(" ", "max-memory", "GB", "refuse to start above this", .true.)]
+    option_t("h", "help", "", "print this help")]
 
 contains
 
@@ -134,9 +136,7 @@ contains
       return
     end if
     name = "--"//trim(option(k)%name)
-    if (option(k)%later) then
-      call usage_error(error, name//" is not available in this version")
-    else if (len_trim(option(k)%value) == 0 .and. has_value) then
+    if (len_trim(option(k)%value) == 0 .and. has_value) then
       call usage_error(error, name//" takes no value, found '"//value//"'")
     else if (index("[ ", option(k)%value(1:1)) == 0 .and. .not. has_value) then
       i = i + 1
@@ -212,6 +212,8 @@ contains
       options%check = .true.
     case ("check-tangent")
       options%check_tangent = .true.
+    case ("estimate")
+      options%estimate = .true.
     case ("lax")
       options%lax = .true.
     case ("quiet")
@@ -250,6 +252,12 @@ contains
       call parse_integer(value, options%threads, ok)
       if (.not. ok .or. options%threads < 1) &
         call usage_error(error, "--threads is '"//value//"': expected an integer > 0")
+    case ("max-memory")
+      call check_first(options%max_memory <= 0.0_dp, name, error)
+      if (allocated(error)) return
+      call parse_real(value, options%max_memory, ok)
+      if (.not. ok .or. .not. options%max_memory > 0.0_dp) &
+        call usage_error(error, "--max-memory is '"//value//"': expected gigabytes, a number > 0")
     case ("compare")
       call check_first(size(options%compare) == 0, name, error)
       if (allocated(error)) return
@@ -310,14 +318,36 @@ contains
       call usage_error(error, "no deck: expected tessera JOB.inp")
     else if (options%quiet .and. options%verbose) then
       call usage_error(error, "--quiet and --verbose: expected one of them")
-    else if (options%check .and. options%check_tangent) then
-      call usage_error(error, "--check and --check-tangent: expected one of them")
-    else if (len(options%restart) > 0 .and. options%check_tangent) then
-      call usage_error(error, "--restart and --check-tangent: expected one of them")
     else if (len(options%restart) > 0 .and. size(options%compare) > 1) then
       call usage_error(error, "--restart goes on with one run: expected one formulation in --compare")
+    else
+      call check_task(options, error)
     end if
   end subroutine check_options
+
+  !> Checks that there is one task, and that what goes with a run goes with it.
+  pure subroutine check_task(options, error)
+    type(command_line_t), intent(in) :: options      !! all options
+    type(error_t), allocatable, intent(out) :: error !! what does not fit
+    character(15), parameter :: name(3) = [character(15) :: "check", "check-tangent", "estimate"]
+    character(:), allocatable :: first, other
+    logical :: asked(3)
+
+    asked = [options%check, options%check_tangent, options%estimate]
+    if (.not. any(asked)) return
+    first = "--"//trim(name(findloc(asked, .true., dim=1)))
+    other = ""
+    if (count(asked) > 1) then
+      other = first
+      first = "--"//trim(name(findloc(asked, .true., dim=1, back=.true.)))
+    else if (len(options%restart) > 0 .and. .not. options%check) then
+      other = "--restart"
+    else if (options%max_memory > 0.0_dp .and. options%check_tangent) then
+      other = "--max-memory"
+    end if
+    if (len(other) == 0) return
+    call usage_error(error, other//" and "//first//": expected one of them")
+  end subroutine check_task
 
   !> Makes an error of wrong usage.
   pure subroutine usage_error(error, message)
@@ -337,7 +367,6 @@ contains
     text = "usage: tessera [options] JOB.inp"//new_line("a")//new_line("a")// &
            "Material point method on simplex meshes with F-bar patches."//new_line("a")
     do i = 1, size(option)
-      if (option(i)%later) cycle
       form = "      --"//trim(option(i)%name)
       if (option(i)%letter /= " ") form(3:5) = "-"//option(i)%letter//","
       if (option(i)%value(1:1) /= "[") form = trim(form)//" "//option(i)%value

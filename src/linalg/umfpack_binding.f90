@@ -9,6 +9,8 @@ module mpm_umfpack_binding
   public :: umfpack_control, umfpack_info
   public :: control_strategy, control_ordering, control_refinements
   public :: strategy_symmetric, ordering_cholmod, info_peak_estimate, info_rcond, info_unit
+  public :: info_entries_l, info_entries_u, info_flops_estimate, info_symmetric_entries
+  public :: info_symmetric_flops, info_variable_peak
   public :: status_ok, status_ordering_failed, status_out_of_memory, status_singular, system_a
 
   ! Zero-based positions, as in umfpack.h.
@@ -19,6 +21,12 @@ module mpm_umfpack_binding
   integer, parameter :: control_ordering = 10    !! position of UMFPACK_ORDERING
   integer, parameter :: info_unit = 3            !! position of UMFPACK_SIZE_OF_UNIT
   integer, parameter :: info_peak_estimate = 21  !! position of UMFPACK_PEAK_MEMORY_ESTIMATE
+  integer, parameter :: info_flops_estimate = 22 !! position of UMFPACK_FLOPS_ESTIMATE
+  integer, parameter :: info_entries_l = 23      !! position of UMFPACK_LNZ_ESTIMATE
+  integer, parameter :: info_entries_u = 24      !! position of UMFPACK_UNZ_ESTIMATE
+  integer, parameter :: info_variable_peak = 26  !! position of UMFPACK_VARIABLE_PEAK_ESTIMATE
+  integer, parameter :: info_symmetric_entries = 36 !! position of UMFPACK_SYMMETRIC_LUNZ
+  integer, parameter :: info_symmetric_flops = 37 !! position of UMFPACK_SYMMETRIC_FLOPS
   integer, parameter :: info_rcond = 67          !! position of UMFPACK_RCOND
 
   integer, parameter :: strategy_symmetric = 3   !! UMFPACK_STRATEGY_SYMMETRIC
