@@ -116,7 +116,8 @@ contains
     if (.not. all(model%step%schedule%direct)) return
     estimate%n_outputs = 1 ! increment 0
     do i = 1, size(model%step)
-      call begin_step(schedule, i, model%step(i)%schedule, stop_times(model, i, schedule%total_time))
+      call begin_step(schedule, i, model%step(i)%schedule, &
+                      stop_times(model, i, schedule%total_time))
       do while (.not. schedule%finished)
         call start_increment(schedule)
         state%increment = schedule%increment

@@ -38,7 +38,7 @@ contains
       call make_error(error, exit_solver, "error: not enough memory for "//what//", about "// &
                       real_text(megabytes(real(n_bytes, dp)))//" MB more are needed: expected "// &
                       "a coarser mesh or fewer points per element")
-    else if (exceeds(expected_peak(need), max_memory)) then
+    else if (is_above(expected_peak(need), max_memory)) then
       call refuse(error, expected_peak(need), max_memory, what//", without its equations,")
     end if
   end subroutine check_memory
@@ -53,19 +53,20 @@ contains
 
     if (max_memory <= 0.0_dp) return
     n_bytes = expected_peak(memory_of_run(system, model))
-    if (exceeds(n_bytes, max_memory)) then
+    if (is_above(n_bytes, max_memory)) then
       call refuse(error, n_bytes, max_memory, "the run with "//integer_text(model%points%n)// &
                   " material points and "//integer_text(system%dofs%n)//" equations")
     end if
   end subroutine check_limit
 
   !> Whether a limit is passed.
-  pure logical function exceeds(n_bytes, max_memory)
+  pure function is_above(n_bytes, max_memory) result(above)
     real(dp), intent(in) :: n_bytes    !! needed [bytes]
     real(dp), intent(in) :: max_memory !! allowed [GB], 0 = any
+    logical :: above
 
-    exceeds = max_memory > 0.0_dp .and. n_bytes > max_memory*gigabyte
-  end function exceeds
+    above = max_memory > 0.0_dp .and. n_bytes > max_memory*gigabyte
+  end function is_above
 
   !> Makes the error.
   pure subroutine refuse(error, n_bytes, max_memory, what)
@@ -75,8 +76,8 @@ contains
     character(*), intent(in) :: what                 !! that needs it
 
     call make_error(error, exit_solver, "error: "//what//" needs about "//size_text(n_bytes)// &
-                    ", and --max-memory allows "//size_text(max_memory*gigabyte)//": expected a "// &
-                    "higher limit, a coarser mesh, fewer points per element or smaller patches")
+                    ", and --max-memory allows "//size_text(max_memory*gigabyte)//": expected "// &
+                    "a higher limit, a coarser mesh, fewer points per element or smaller patches")
   end subroutine refuse
 
   !> Memory that the whole run is expected to take.

@@ -31,7 +31,7 @@ module mpm_run_estimate
     integer :: n_unknowns = 0
     integer(ip) :: n_nonzeros = 0_ip         !! of the tangent
     type(memory_need_t) :: memory
-    real(dp) :: point_seconds = 0.0_dp       !! CPU of points, forces and tangent in an iteration [s]
+    real(dp) :: point_seconds = 0.0_dp       !! CPU of points, forces, tangent in an iteration [s]
     real(dp) :: factor_seconds = 0.0_dp      !! CPU of a factorisation [s]
     integer  :: n_increments = 0             !! if none is cut, 0 = the deck leaves it to the run
     integer  :: n_outputs = 0                !! increments with fields, 0 = left to the run
