@@ -42,6 +42,7 @@ contains
     if (all(report%outcome /= [outcome_converged, outcome_interrupted])) &
       state%n_cuts = state%n_cuts + 1
     state%wall_seconds = wall_time() - state%started
+    state%point_loop_seconds = system%point_loop_seconds
   end subroutine note_attempt
 
   !> Forces and displacements of the converged increment.

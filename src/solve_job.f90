@@ -213,6 +213,7 @@ contains
     integer, intent(in)               :: n_iterations !! of the increment
     type(error_t), allocatable, intent(out) :: error  !! lost point, inverted mesh, file, too many
     type(location_report_t) :: location
+    real(dp) :: clock(2)
 
     associate (body => analysis%body, system => analysis%system, schedule => analysis%schedule)
       ! First, because it may fail: the last increment is then the one before.
@@ -227,10 +228,13 @@ contains
       call accept_step(schedule, n_iterations)
       call keep_below_stretch(schedule, analysis%report%stretch, &
                               model%step(schedule%step)%newton%max_stretch)
+      call cpu_time(clock(1))
       call locate_points(body%points, body%mesh, analysis%locator, model%location, location)
       call sort_points(body%points)
       call find_active(system, body%points)
       call locate_surface_points(body%surface, body%mesh, system%active)
+      call cpu_time(clock(2))
+      state%location_seconds = state%location_seconds + clock(2) - clock(1)
       call note_location(state, schedule, location)
       analysis%report%worst_point = merge(location%first_lost, 0, &
                                           model%location%lost_action == lost_is_error)

@@ -134,15 +134,17 @@ def without_time(path):
     return [line for line in lines if not line.startswith("# job ")]
 
 
-SECONDS = ("kinematics", "stress", "assembly", "factorisation", "solve")
+# What belongs to the machine and differs from run to run.
+MACHINE = ("kinematics", "stress", "assembly", "factorisation", "solve", "location", "output")
+MACHINE += ("point_loop", "factor_memory")
 
 
 def datasets(path):
-    """Every dataset of a results file but seconds and the text of the deck, by name."""
+    """Every dataset of a results file but those of the machine and the text of the deck."""
     found = {}
 
     def visit(name, item):
-        if isinstance(item, h5py.Dataset) and name.rsplit("/", 1)[-1] not in (*SECONDS, "deck"):
+        if isinstance(item, h5py.Dataset) and name.rsplit("/", 1)[-1] not in (*MACHINE, "deck"):
             found[name] = item[()]
 
     with h5py.File(path) as file:

@@ -181,6 +181,14 @@ def test_group_tessera_tells_about_the_run(bar_run):
     assert np.all(iterations["residual"][last] <= 1e-9)
     for work in ("kinematics", "stress", "assembly", "factorisation", "solve"):
         assert np.all(iterations[work] >= 0.0)
+    for work in ("location", "output", "point_loop"):
+        assert ledger[work].shape == (5,)
+        assert np.all(ledger[work] >= 0.0)
+    assert np.sum(ledger["output"]) > 0.0
+    assert np.all(ledger["point_loop"][1:] > 0.0)
+    assert list(ledger["unknowns"]) == [0, *[ledger["unknowns"][1]] * 4]
+    assert np.all(ledger["nonzeros"][1:] > ledger["unknowns"][1:])
+    assert np.all(ledger["factor_memory"][1:] > 8 * ledger["nonzeros"][1:])
     np.testing.assert_allclose(ledger["mass"], 8.0, rtol=1e-12)
     np.testing.assert_allclose(ledger["volume"], [4.0, 4.1, 4.2, 4.3, 4.4], rtol=1e-9)
     np.testing.assert_allclose(ledger["centre"][-1], [2.2, 0.5, 0.0], rtol=1e-9)

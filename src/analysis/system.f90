@@ -6,7 +6,7 @@ module mpm_system
   use mpm_dof_map, only: dof_map_t
   use mpm_fbar, only: project_onto_patches
   use mpm_ghost_penalty, only: add_ghost_force, ghost_penalty_t, open_ghost
-  use mpm_kinds, only: dp
+  use mpm_kinds, only: dp, ip
   use mpm_kinematics, only: allocate_kinematics, compute_kinematics, kinematics_t
   use mpm_linear_solver, only: free_solver, linear_solver_t
   use mpm_material, only: material_t
@@ -55,6 +55,7 @@ module mpm_system
     integer :: worst_element = 0            !! inverted element or element of the failed point
     integer :: worst_point = 0              !! failed point
     real(dp) :: seconds(2) = 0.0_dp         !! CPU of all evaluations: kinematics, stress with internal force [s]
+    real(dp) :: point_loop_seconds = 0.0_dp !! wall time of all stress updates [s]
   end type system_t
 
 contains
@@ -121,6 +122,7 @@ contains
     logical, intent(in)           :: with_moduli
     integer, intent(out)          :: outcome !! evaluation_*
     real(dp) :: clock(3)
+    integer(ip) :: ticks(2), rate
 
     outcome = evaluation_ok
     call cpu_time(clock(1))
@@ -131,8 +133,12 @@ contains
     end if
     call project_onto_patches(system%kinematics, body%mesh, body%patches, system%active)
     call cpu_time(clock(2))
+    call system_clock(ticks(1))
     call update_points(system%trial, system%sums, body%points, body%material, system%kinematics, &
                        system%element, with_moduli)
+    call system_clock(ticks(2), rate)
+    system%point_loop_seconds = system%point_loop_seconds &
+                                + real(ticks(2) - ticks(1), dp)/real(rate, dp)
     system%worst_point = system%sums%failed_point
     if (system%worst_point > 0) then
       outcome = evaluation_failed

@@ -96,6 +96,7 @@ contains
     call exchange_integer(record, "state_n_lost", state%n_lost, error)
     call exchange_integer(record, "state_n_extrapolated", state%n_extrapolated, error)
     call exchange_integer(record, "state_n_unknowns", state%n_unknowns, error)
+    call exchange_integer(record, "state_n_nonzeros", state%n_nonzeros, error)
     call exchange_integer(record, "state_n_constraints", state%n_constraints, error)
     call exchange_integer(record, "state_n_checked", state%n_checked, error)
     has_index = allocated(state%checkerboard)

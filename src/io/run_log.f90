@@ -21,6 +21,7 @@ module mpm_run_log
   type :: run_log_t
     type(text_file_t) :: file
     real(dp) :: seconds(5) = 0.0_dp !! CPU: kinematics, stress, assembly, factorisation, solve [s]
+    real(dp) :: output_seconds = 0.0_dp !! CPU of writing, but for closing the files [s]
     integer  :: n_attempts = 0      !! increments tried
     integer  :: n_iterations = 0    !! corrections of Newton's method
   end type run_log_t
@@ -214,7 +215,7 @@ contains
            //integer_text(state%n_extrapolated)//line_end//largest_share_text(state) &
            //"balance of forces: at most "//real_text(state%balance) &
            //" of them is missing in an increment"//line_end &
-           //seconds_text(log, total_cpu) &
+           //seconds_text(log, state, total_cpu) &
            //"wall time: "//real_text(state%wall_seconds)//" s"//line_end &
            //"exit code: "//integer_text(exit_code)
     call write_line(log%file, text, error)
@@ -231,15 +232,17 @@ contains
   end function largest_share_text
 
   !> CPU seconds by kind of work.
-  pure function seconds_text(log, total) result(text)
-    type(run_log_t), intent(in) :: log !! seconds of Newton's method
-    real(dp), intent(in) :: total      !! of the program [s]
+  pure function seconds_text(log, state, total) result(text)
+    type(run_log_t), intent(in) :: log     !! seconds of Newton's method and of writing
+    type(run_state_t), intent(in) :: state !! seconds of locating points
+    real(dp), intent(in) :: total          !! of the program [s]
     character(:), allocatable :: text
 
     text = "CPU seconds: kinematics "//real_text(log%seconds(1)) &
            //", stress "//real_text(log%seconds(2))//", assembly "//real_text(log%seconds(3)) &
            //", factorisation "//real_text(log%seconds(4))//", solve "//real_text(log%seconds(5)) &
-           //", everything "//real_text(total)//line_end
+           //", location "//real_text(state%location_seconds)//", output " &
+           //real_text(log%output_seconds)//", everything "//real_text(total)//line_end
   end function seconds_text
 
   !> Sums of the reactions over the node sets that have any.

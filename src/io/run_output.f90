@@ -44,6 +44,7 @@ module mpm_run_output
     logical :: metered = .false.                     !! log or deck ask for the locking meter
     type(result_paths_t) :: paths                    !! of all files
     integer :: n_shown = -1                          !! accepted increments at the last field output
+    real(dp) :: told(3) = 0.0_dp                     !! seconds in earlier rows of the ledger
     character(:), allocatable :: run_id              !! no other run has it
   end type run_output_t
 
@@ -101,8 +102,22 @@ contains
     if (allocated(error)) call close_results(output%results, error)
   end subroutine open_fields
 
-  !> Writes what Newton's method did in an attempt, converged or not.
+  !> Writes what Newton's method did in an attempt, converged or not, and adds up the time it takes.
   subroutine write_attempt(output, state, report, error)
+    type(run_output_t), intent(inout) :: output      !! open
+    type(run_state_t), intent(in) :: state           !! after the attempt
+    type(newton_report_t), intent(in) :: report      !! of the attempt
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+    real(dp) :: clock(2)
+
+    call cpu_time(clock(1))
+    call write_rows_of_attempt(output, state, report, error)
+    call cpu_time(clock(2))
+    output%log%output_seconds = output%log%output_seconds + clock(2) - clock(1)
+  end subroutine write_attempt
+
+  !> Writes log, status and iterations of an attempt, and shows it.
+  subroutine write_rows_of_attempt(output, state, report, error)
     type(run_output_t), intent(inout) :: output      !! open
     type(run_state_t), intent(in) :: state           !! after the attempt
     type(newton_report_t), intent(in) :: report      !! of the attempt
@@ -123,9 +138,9 @@ contains
       return
     end if
     call show_progress(state, estimated_time_left(state, output%status%end_time))
-  end subroutine write_attempt
+  end subroutine write_rows_of_attempt
 
-  !> Writes an accepted increment; before the first one, the state at time zero.
+  !> Writes an accepted increment; before the first one, the state at time zero. Adds up the time.
   subroutine write_increment(output, model, mesh, points, state, error)
     type(run_output_t), intent(inout) :: output      !! open
     type(model_t), intent(in)     :: model           !! steps and patches
@@ -133,7 +148,24 @@ contains
     type(points_t), intent(in)    :: points          !! converged state
     type(run_state_t), intent(in) :: state           !! after the increment
     type(error_t), allocatable, intent(out) :: error !! exit_file
+    real(dp) :: clock(2)
+
+    call cpu_time(clock(1))
+    call write_rows_and_fields(output, model, mesh, points, state, error)
+    call cpu_time(clock(2))
+    output%log%output_seconds = output%log%output_seconds + clock(2) - clock(1)
+  end subroutine write_increment
+
+  !> Writes the rows of an accepted increment, and its fields when they are due.
+  subroutine write_rows_and_fields(output, model, mesh, points, state, error)
+    type(run_output_t), intent(inout) :: output      !! open
+    type(model_t), intent(in)     :: model           !! steps and patches
+    type(mesh_t), intent(in)      :: mesh            !! where it is now
+    type(points_t), intent(in)    :: points          !! converged state
+    type(run_state_t), intent(in) :: state           !! after the increment
+    type(error_t), allocatable, intent(out) :: error !! exit_file
     real(dp), allocatable :: values(:)
+    real(dp) :: seconds(3)
     logical :: due
 
     if (model%locking_meter .and. state%step > 0) then
@@ -146,8 +178,10 @@ contains
     if (allocated(error)) return
     call append_history(output%tables, output%results%points%file, state, values, error)
     if (allocated(error)) return
+    seconds = [state%location_seconds, output%log%output_seconds, state%point_loop_seconds]
     call append_ledger(output%tables, output%results%points%file, state, point_ledger(points), &
-                       error)
+                       seconds - output%told, error)
+    output%told = seconds
     if (allocated(error)) return
     call evaluate_expectations(output%verdict, points, model%patches, state)
     due = state%step == 0 .or. output%n_shown < 0 ! the first one, also after a restart
@@ -158,7 +192,7 @@ contains
     else
       call publish_hdf5_file(output%results%points%file, error)
     end if
-  end subroutine write_increment
+  end subroutine write_rows_and_fields
 
   !> Writes the fields of the last accepted increment before a run ends early, unless they are
   !! there already.

@@ -51,6 +51,7 @@ module mpm_run_state
     integer  :: n_lost = 0              !! points lost so far
     integer  :: n_extrapolated = 0      !! points just outside the mesh
     integer  :: n_unknowns = 0          !! free displacements of the increment
+    integer  :: n_nonzeros = 0          !! entries of its tangent
     integer  :: n_constraints = 0       !! its volumetric constraints
     integer  :: n_checked = 0           !! elements in the checkerboard index
     real(dp), allocatable :: checkerboard     !! index of the pressure [-]; unallocated: not asked
@@ -62,6 +63,10 @@ module mpm_run_state
     real(dp) :: ghost_share = 0.0_dp    !! largest one of the run so far [-]
     real(dp) :: balance_now = 0.0_dp    !! forces that do not balance, part of all of them [-]
     real(dp) :: balance = 0.0_dp        !! largest one of the run so far [-]
+    ! What belongs to the machine and not to the run; a restart file does not hold it.
+    real(dp) :: factor_memory = 0.0_dp  !! most that a factorisation took so far [bytes]
+    real(dp) :: location_seconds = 0.0_dp !! CPU of locating points so far [s]
+    real(dp) :: point_loop_seconds = 0.0_dp !! wall time of stress updates so far [s]
     real(dp), allocatable :: reaction(:, :)   !! (n_dim, n_node)  internal minus applied force where
                                               !!                  prescribed, 0 elsewhere [force]
     real(dp), allocatable :: applied(:, :)    !! (n_dim, n_node)  external nodal forces [force]
@@ -98,13 +103,15 @@ contains
     allocate (state%delta_j_patch(n_patch), source=1.0_dp)
   end subroutine make_run_state
 
-  !> Unknowns and volumetric constraints of an increment. Source: theory.md (22).
+  !> Unknowns, entries of the tangent and volumetric constraints of an increment. Source: theory.md (22).
   pure subroutine note_constraints(state, patches, system)
     type(run_state_t), intent(inout) :: state !! takes the counts
     type(patches_t), intent(in) :: patches    !! those of the formulation
     type(system_t), intent(in)  :: system     !! solved; its active set is that of the increment
 
     state%n_unknowns = system%dofs%n
+    state%n_nonzeros = int(system%tangent%nnz)
+    state%factor_memory = system%solver%most_memory
     state%n_constraints = n_active_patches(patches, system%element)
   end subroutine note_constraints
 

@@ -20,19 +20,22 @@ module mpm_run_tables
     "attempt", "iteration", "residual", "kinematics", "stress", "assembly", "factorisation", &
     "solve"]
   integer, parameter :: n_iteration_integers = 4 !! leading columns of integers
-  character(13), parameter :: ledger_columns(14) = [character(13) :: "step", "increment", "time", &
+  character(13), parameter :: ledger_columns(20) = [character(13) :: "step", "increment", "time", &
     "count", "mass", "volume", "lost", "extrapolated", "centre", "checkerboard", "ghost_share", &
-    "eigen_min", "eigen_max", "balance"]
+    "eigen_min", "eigen_max", "balance", "unknowns", "nonzeros", "factor_memory", "location", &
+    "output", "point_loop"]
   integer, parameter :: column_of_centre = 9
   integer, parameter :: column_of_checkerboard = 10
   integer, parameter :: column_of_share = 11
   integer, parameter :: column_of_balance = 14
+  integer, parameter :: column_of_unknowns = 15
+  integer, parameter :: column_of_location = 18
 
   !> The tables; each column is a dataset.
   type :: run_tables_t
     type(series_t), allocatable :: history(:)    !! step, increment, time, then the *HISTORY ones
     type(series_t), allocatable :: iterations(:) !! (10)
-    type(series_t), allocatable :: ledger(:)     !! (14)
+    type(series_t), allocatable :: ledger(:)     !! (20)
   end type run_tables_t
 
 contains
@@ -112,7 +115,7 @@ contains
     do i = 1, size(series)
       layout = series_layout_t()
       select case (ledger_columns(i))
-      case ("step", "increment", "count", "lost", "extrapolated")
+      case ("step", "increment", "count", "lost", "extrapolated", "unknowns", "nonzeros")
         layout%kind = kind_int64
       case ("centre")
         layout%n_columns = 3
@@ -169,13 +172,16 @@ contains
   end subroutine append_iterations
 
   !> Appends the ledger of an increment.
-  subroutine append_ledger(tables, file, state, ledger, error)
+  subroutine append_ledger(tables, file, state, ledger, seconds, error)
     type(run_tables_t), intent(inout) :: tables      !! longer
     type(hdf5_file_t), intent(inout) :: file         !! JOB.vtkhdf
     type(run_state_t), intent(in) :: state           !! step, increment, time, checkerboard
     type(ledger_t), intent(in) :: ledger             !! after the increment
+    real(dp), intent(in) :: seconds(3)               !! since the last row: location of points and
+                                                     !! output (CPU), point loop (wall) [s]
     type(error_t), allocatable, intent(out) :: error !! exit_file
     real(dp) :: checkerboard(1)
+    integer :: i
 
     checkerboard = ieee_value(1.0_dp, ieee_quiet_nan)
     if (allocated(state%checkerboard)) checkerboard = state%checkerboard
@@ -193,6 +199,13 @@ contains
     call append_rows(tables%ledger(column_of_share + 1), file, state%eigenvalue(1:1), error)
     call append_rows(tables%ledger(column_of_share + 2), file, state%eigenvalue(2:2), error)
     call append_rows(tables%ledger(column_of_balance), file, [state%balance_now], error)
+    call append_rows(tables%ledger(column_of_unknowns), file, [int(state%n_unknowns, ip)], error)
+    call append_rows(tables%ledger(column_of_unknowns + 1), file, [int(state%n_nonzeros, ip)], &
+                     error)
+    call append_rows(tables%ledger(column_of_unknowns + 2), file, [state%factor_memory], error)
+    do i = 1, size(seconds)
+      call append_rows(tables%ledger(column_of_location + i - 1), file, seconds(i:i), error)
+    end do
   end subroutine append_ledger
 
   !> A name without the separator of HDF5 paths.

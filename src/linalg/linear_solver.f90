@@ -7,7 +7,7 @@ module mpm_linear_solver
   use mpm_memory, only: has_room
   use mpm_openblas_binding, only: dtrsm, openblas_set_num_threads
   use mpm_umfpack_binding, only: control_ordering, control_refinements, control_strategy, &
-    info_peak_estimate, info_rcond, info_unit, ordering_cholmod, status_ok, &
+    info_peak, info_peak_estimate, info_rcond, info_unit, ordering_cholmod, status_ok, &
     status_ordering_failed, status_out_of_memory, strategy_symmetric, system_a, &
     umfpack_control, umfpack_dl_defaults, umfpack_dl_free_numeric, umfpack_dl_free_symbolic, &
     umfpack_dl_numeric, umfpack_dl_solve, umfpack_dl_symbolic, umfpack_info
@@ -33,6 +33,7 @@ module mpm_linear_solver
     real(dp)    :: info(0:umfpack_info - 1) = 0.0_dp       !! statistics of UMFPACK's last call
     real(dp)    :: memory = 0.0_dp      !! estimate for a factorisation by the last analysis, 0 if
                                         !! unknown [bytes]
+    real(dp)    :: most_memory = 0.0_dp !! of all factorisations so far, as UMFPACK reports [bytes]
     real(dp)    :: rcond = 1.0_dp       !! smallest over largest pivot, last factorisation [-]
     integer     :: n_analyses = 0       !! analyses so far
     integer     :: n_factorizations = 0 !! factorisations so far
@@ -108,6 +109,7 @@ contains
                                 solver%numeric, solver%control, solver%info)
     solver%n_factorizations = solver%n_factorizations + 1
     solver%rcond = solver%info(info_rcond)
+    solver%most_memory = max(solver%most_memory, solver%info(info_peak)*solver%info(info_unit))
     outcome = outcome_of(status)
     if (outcome == solver_ok .and. .not. solver%rcond > smallest_rcond) outcome = solver_singular
   end subroutine factorize

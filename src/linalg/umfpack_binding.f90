@@ -8,7 +8,7 @@ module mpm_umfpack_binding
   public :: umfpack_dl_free_symbolic, umfpack_dl_free_numeric
   public :: umfpack_control, umfpack_info
   public :: control_strategy, control_ordering, control_refinements
-  public :: strategy_symmetric, ordering_cholmod, info_peak_estimate, info_rcond, info_unit
+  public :: strategy_symmetric, ordering_cholmod, info_peak, info_peak_estimate, info_rcond, info_unit
   public :: info_entries_l, info_entries_u, info_flops_estimate, info_symmetric_entries
   public :: info_symmetric_flops, info_variable_peak
   public :: status_ok, status_ordering_failed, status_out_of_memory, status_singular, system_a
@@ -27,6 +27,7 @@ module mpm_umfpack_binding
   integer, parameter :: info_variable_peak = 26  !! position of UMFPACK_VARIABLE_PEAK_ESTIMATE
   integer, parameter :: info_symmetric_entries = 36 !! position of UMFPACK_SYMMETRIC_LUNZ
   integer, parameter :: info_symmetric_flops = 37 !! position of UMFPACK_SYMMETRIC_FLOPS
+  integer, parameter :: info_peak = 41           !! position of UMFPACK_PEAK_MEMORY
   integer, parameter :: info_rcond = 67          !! position of UMFPACK_RCOND
 
   integer, parameter :: strategy_symmetric = 3   !! UMFPACK_STRATEGY_SYMMETRIC

@@ -9,6 +9,7 @@ import numpy as np
 
 SECONDS = ("kinematics", "stress", "assembly", "factorisation", "solve")  # of tessera/iterations
 TIMES = {f"tessera/iterations/{name}" for name in SECONDS}
+TIMES |= {f"tessera/ledger/{name}" for name in ("location", "output", "point_loop")}
 OF_THE_MOMENT = {"started", "threads", "run"}  # of these groups, as attributes
 GROUPS = {"tessera", "VTKHDF"}
 
