@@ -1,0 +1,1 @@
+"""Speed of the program: cases, kernels, limits, and the page about them."""
