@@ -107,9 +107,9 @@ def read_history(path: Path) -> dict[str, np.ndarray]:
 
 
 def largest_difference(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> float:
-    """Largest difference of two histories, relative to the largest value of its column; a column
-    of rounding errors is compared with the others of its quantity. Infinite when they have other
-    increments."""
+    """Largest difference of two histories, relative to the largest value of its column, or to
+    1e-4 of the largest one of its quantity where that is more: a column may hold nothing but
+    rounding errors. Infinite when they have other increments."""
     if one.keys() != other.keys() or len(one["time"]) != len(other["time"]):
         return float("inf")
     largest = {name: np.max(np.abs(column)) for name, column in one.items()}
@@ -117,7 +117,7 @@ def largest_difference(one: dict[str, np.ndarray], other: dict[str, np.ndarray])
     for name, column in one.items():
         kind = name.rstrip("]").split("[")[0].rstrip("0123456789")
         alike = [v for k, v in largest.items() if k.split("[")[0].rstrip("0123456789") == kind]
-        scale = max(largest[name], 1e-9 * max(alike))
+        scale = max(largest[name], 1e-4 * max(alike))
         if scale > 0.0:
             worst = max(worst, float(np.max(np.abs(column - other[name])) / scale))
     return worst
