@@ -90,6 +90,10 @@ def test_results_in_another_folder_begin_at_the_restart(run_tessera, tmp_path):
     rows = [line for line in other if line[0].isdigit()]
     assert 1 < len(rows) < 10
     assert rows == whole[-len(rows) :]
+    ledgers = [datasets(tmp_path / f / "job.vtkhdf") for f in ("whole", "other")]
+    for name in ("count", "unknowns", "nonzeros"):
+        whole, other = (table[f"tessera/ledger/{name}"] for table in ledgers)
+        assert list(other) == list(whole[-len(rows) :]), name
 
 
 def test_restart_request_is_obeyed(run_tessera, tmp_path):
