@@ -45,8 +45,8 @@ def run_of(size=1.0, linear=1.0, cpu=5.0, **values):
     seconds |= {"factorisation": 0.9 * linear * size**2, "solve": 0.1 * linear * size**2}
     return {
         "cpu": cpu, "wall": cpu, "memory": 2**20, "points": int(40000 * size),
-        "unknowns": int(2000 * size), "nonzeros": 9, "factor_memory": 1e6, "increments": 1,
-        "iterations": 7, "plastic_iterations": 7, "seconds": seconds,
+        "unknowns": int(2000 * size), "nonzeros": 9, "factor_memory": 1e6,
+        "increments": 1, "outputs": 2, "iterations": 7, "plastic_iterations": 7, "seconds": seconds,
         "plastic": dict.fromkeys(KERNELS, 0.15),
         "linear": [{"iterations": 7, "seconds": linear * size**2}],
     } | values  # fmt: skip

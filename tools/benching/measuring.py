@@ -30,9 +30,15 @@ def main_solver(solvers: Sequence[str]) -> str:
     return solvers[-1] if solvers else DEFAULT
 
 
-def part_per_iteration(runs: Sequence[dict], part: str) -> float:
-    """Median CPU seconds of a part per Newton iteration; of location and output per increment."""
-    per = "increments" if part in ("location", "output") else "iterations"
+def unit_of(part: str) -> str:
+    """What the cost of a part is counted by."""
+    return {"location": "increments", "output": "outputs"}.get(part, "iterations")
+
+
+def unit_cost(runs: Sequence[dict], part: str) -> float:
+    """Median CPU seconds of a part per Newton iteration; of location per increment, of output per
+    output of fields."""
+    per = unit_of(part)
     return float(np.median([run["seconds"][part] / max(1, run[per]) for run in runs]))
 
 
@@ -68,9 +74,18 @@ def exponents(found: dict, cases: Sequence[Case], key: str) -> dict[str, tuple[f
     points = [median(runs, "points") for _, runs in series]
     result = {}
     for part in PARTS:
-        costs = [part_per_iteration(runs, part) for _, runs in series]
+        costs = costs_of(series, part)
         result[part] = (growth(unknowns, costs), growth(points, costs))
     return result
+
+
+def costs_of(series: Sequence[tuple[Case, list[dict]]], part: str) -> list[float]:
+    """Cost of a part over the series; the deck as it is writes other fields than the short ones
+    and has no number for output."""
+    return [
+        float("nan") if part == "output" and not case.size else unit_cost(runs, part)
+        for case, runs in series
+    ]
 
 
 def both_solvers(entry: dict) -> tuple[list[dict], list[dict]] | None:
@@ -97,7 +112,7 @@ def compare_solvers(entry: dict) -> dict | None:
 
 def factorisation_of(runs: Sequence[dict]) -> float:
     """Median CPU seconds of one factorisation, from runs with one per iteration."""
-    return part_per_iteration(runs, "factorisation")
+    return unit_cost(runs, "factorisation")
 
 
 def worst_increment(runs: Sequence[dict], factorisation: float, n: int = 7) -> float:

@@ -3,26 +3,24 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
-
-mpl.use("Agg")
-
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
 
 from benching.cases import Case
 from benching.kernels import FLOPS, WAYS
 from benching.measuring import (
+    costs_of,
     growth,
     kernel_table,
     key_of,
     linear_seconds,
     main_solver,
     median,
-    part_per_iteration,
     roofline,
     series_of,
+    unit_of,
 )
 from benching.running import PARTS
 
@@ -30,7 +28,7 @@ from benching.running import PARTS
 PLOTS = {
     "performance_parts": (
         "Growth: exponent over the unknowns, over the points",
-        "CPU seconds per Newton iteration of each part over the unknowns",
+        "CPU seconds of each part over the unknowns",
     ),
     "performance_solvers": (
         "DIRECT against RECYCLED",
@@ -73,6 +71,12 @@ def logarithmic(axes: Axes, across: str, up: str) -> None:
     axes.set(xscale="log", yscale="log", xlabel=across, ylabel=up)
 
 
+def mark_sizes(axes: Axes, sizes: Sequence[float]) -> None:
+    """Marks at the sizes that were run, instead of powers of ten."""
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xticks(sizes, [f"{size:,.0f}" for size in sizes])
+
+
 def draw_parts(axes: Axes, found: dict, cases: Sequence[Case]) -> bool:
     """Cost per iteration of each part."""
     series = series_of(found, cases, key_of(main_solver(found["solvers"]), 1))
@@ -80,11 +84,11 @@ def draw_parts(axes: Axes, found: dict, cases: Sequence[Case]) -> bool:
         return False
     unknowns = [median(runs, "unknowns") for _, runs in series]
     for part, colour, mark in zip(PARTS, COLOURS, MARKS):
-        costs = [part_per_iteration(runs, part) for _, runs in series]
-        per = " (per increment)" if part in ("location", "output") else ""
-        label = f"{part}{per}, exponent {growth(unknowns, costs):.2f}"
+        costs = costs_of(series, part)
+        label = f"{part} (per {unit_of(part)[:-1]}), exponent {growth(unknowns, costs):.2f}"
         axes.plot(unknowns, costs, color=colour, marker=mark, label=label)
-    logarithmic(axes, "unknowns", "CPU seconds per iteration")
+    logarithmic(axes, "unknowns", "CPU seconds")
+    mark_sizes(axes, unknowns)
     axes.legend(fontsize=8)
     return True
 
@@ -106,6 +110,7 @@ def draw_solvers(axes: Axes, found: dict, cases: Sequence[Case]) -> bool:
         drawn = True
     logarithmic(axes, "unknowns", "CPU seconds per iteration")
     if drawn:
+        mark_sizes(axes, unknowns)
         axes.legend()
     return drawn
 
@@ -120,7 +125,7 @@ def draw_kernels(axes: Axes, found: dict, _: Sequence[Case]) -> bool:
             pairs = sorted((n, c) for (k, w, n), c in table.items() if (k, w) == (kind, way))
             axes.plot(*zip(*pairs), line, color=colour, marker=mark, label=f"{kind}, {way}")
     axes.set(xscale="log", xlabel="points", ylabel="microseconds of CPU per point")
-    axes.set_ylim(bottom=0.0)
+    axes.set_ylim(0.0, 1.1 * max(table.values()))
     axes.legend()
     return True
 

@@ -48,6 +48,7 @@ def read_results(path: Path, log: Path) -> dict:
     with h5py.File(path) as file:
         table = {name: column[()] for name, column in file["tessera/iterations"].items()}
         ledger = {name: column[()] for name, column in file["tessera/ledger"].items()}
+        n_outputs = int(file["VTKHDF/Steps"].attrs["NSteps"])
     corrections = table["iteration"] > 0
     increments = sorted(set(table["increment"][corrections].tolist()))
     plastic = np.isin(table["increment"], plastic_increments(log)) & corrections
@@ -62,6 +63,7 @@ def read_results(path: Path, log: Path) -> dict:
         "nonzeros": int(ledger["nonzeros"].max()),
         "factor_memory": float(ledger["factor_memory"].max()),
         "increments": len(ledger["increment"]) - 1,
+        "outputs": n_outputs,
         "iterations": int(corrections.sum()),
         "plastic_iterations": int(plastic.sum()),
         "seconds": seconds,
