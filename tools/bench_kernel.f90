@@ -8,7 +8,7 @@ program bench_kernel
   use kernel_body, only: body_t, make_body, update_by_point
   use mpm_constitutive_update, only: allocate_sums, element_sums_t, update_points
   use mpm_kinds, only: dp, ip
-  use mpm_material_points, only: point_state_t
+  use mpm_material_points, only: open_trial, trial_state_t
   implicit none
 
   integer, parameter :: n_cells(4) = [3, 5, 11, 25]  !! along an edge, of six tetrahedra each
@@ -57,12 +57,12 @@ contains
     integer, intent(in) :: n_cells   !! along an edge
     type(body_t) :: body
     type(element_sums_t) :: blocked, pointwise
-    type(point_state_t)  :: trial
+    type(trial_state_t)  :: trial
     type(cost_t) :: cost
     real(dp) :: difference
 
     call make_body(body, n_cells, strength)
-    trial = body%points%state
+    call open_trial(trial, body%points%state)
     call allocate_sums(blocked, body%mesh%n_el)
     call allocate_sums(pointwise, body%mesh%n_el)
     call time_updates(cost, trial, blocked, body, by_point=.false.)
@@ -78,7 +78,7 @@ contains
   !> Times batches of updates from the same converged state; the first one warms up.
   subroutine time_updates(cost, trial, sums, body, by_point)
     type(cost_t), intent(out) :: cost            !! of the best batch
-    type(point_state_t), intent(inout) :: trial  !! overwritten
+    type(trial_state_t), intent(inout) :: trial  !! overwritten
     type(element_sums_t), intent(inout) :: sums  !! overwritten
     type(body_t), intent(in) :: body             !! converged state, increment
     logical, intent(in) :: by_point              !! point by point, else in blocks
@@ -95,7 +95,8 @@ contains
         if (by_point) then
           call update_by_point(trial, sums, body)
         else
-          call update_points(trial, sums, body%points, body%material, body%kinematics, body%element)
+          call update_points(trial, sums, body%points, body%material, body%kinematics, &
+                             body%element, .true.)
         end if
       end do
       call system_clock(ticks(2), rate)

@@ -5,7 +5,7 @@ module kernel_body
   use mpm_kinds, only: dp
   use mpm_kinematics, only: allocate_kinematics, kinematics_t
   use mpm_material, only: law_von_mises, material_t
-  use mpm_material_points, only: copy_state, generate_points, point_state_t, points_t
+  use mpm_material_points, only: generate_points, open_trial, points_t, trial_state_t
   use mpm_mesh, only: mesh_t
   use mpm_mesh_generator, only: box_settings_t, generate_box, graded_planes
   use mpm_parent_mesh, only: parent_mesh_t
@@ -36,7 +36,7 @@ contains
     integer, intent(in)  :: n_cells   !! along an edge, six tetrahedra each
     real(dp), intent(in) :: strength  !! sqrt(3 J2) at yield [force/length^2]
     type(element_sums_t) :: sums
-    type(point_state_t)  :: trial
+    type(trial_state_t)  :: trial
     type(error_t), allocatable :: error
     integer :: e
 
@@ -55,10 +55,12 @@ contains
       call draw(body%kinematics%disp_grad_bar(:, :, e), e)
       body%kinematics%delta_j_bar_m1(e) = det_m1(body%kinematics%disp_grad_bar(:, :, e))
     end do
-    trial = body%points%state
+    call open_trial(trial, body%points%state)
     call allocate_sums(sums, body%mesh%n_el)
-    call update_points(trial, sums, body%points, body%material, body%kinematics, body%element)
-    call copy_state(body%points%state, trial)
+    call update_points(trial, sums, body%points, body%material, body%kinematics, body%element, &
+                       .true.)
+    body%points%state%left_cauchy_green_e_m1 = trial%left_cauchy_green_e_m1
+    body%points%state%hardening = trial%hardening
   end subroutine make_body
 
   !> Linear tetrahedra with edges of one.
@@ -93,7 +95,7 @@ contains
 
   !> The stress update of all points with the checked update of one, element by element.
   subroutine update_by_point(trial, sums, body)
-    type(point_state_t), intent(inout)  :: trial !! allocated like points%state
+    type(trial_state_t), intent(inout)  :: trial !! allocated for the points
     type(element_sums_t), intent(inout) :: sums  !! stress, moduli, points that flow
     type(body_t), intent(in) :: body             !! converged state, increment
     type(point_response_t) :: response
@@ -117,12 +119,8 @@ contains
           factor = points%volume(p)/points%state%jacobian_bar(p)
           sums%stress(:, e) = sums%stress(:, e) + factor*response%kirchhoff
           sums%moduli(:, :, e) = sums%moduli(:, :, e) + factor*response%moduli
-          trial%strain_e(:, p) = response%strain_e
           trial%left_cauchy_green_e_m1(:, p) = response%left_cauchy_green_e_m1
           trial%hardening(1, p) = response%plastic_strain
-          trial%jacobian_bar(p) = points%state%jacobian_bar(p) &
-                                  *(1.0_dp + kinematics%delta_j_bar_m1(e))
-          trial%cauchy(:, p) = response%kirchhoff/trial%jacobian_bar(p)
         end do
       end do
       !$omp end parallel do
