@@ -1,7 +1,6 @@
 !> --estimate: what a job will need, told before anything is solved or written.
 module mpm_estimate_job
   use mpm_assembly, only: assemble_tangent
-  use mpm_external_force, only: prepare_loads
   use mpm_error, only: error_t
   use mpm_factor_estimate, only: factor_seconds, measure_flop_rate
   use mpm_increments, only: accept_step, begin_step, schedule_t, start_increment
@@ -38,7 +37,6 @@ contains
 
     call make_body(body, model)
     call open_system(system, body)
-    call prepare_loads(model%step(1)%load, model%mesh, model%points)
     call begin_step(schedule, 1, model%step(1)%schedule, [real(dp) ::])
     call start_increment(schedule)
     call prepare_increment(system, body, model, schedule, 0.0_dp, error)

@@ -9,7 +9,6 @@ module mpm_run_job
                        exit_interrupted, exit_ok, exit_terminated, make_error
   use mpm_estimate_job, only: estimate_job
   use mpm_expectations, only: n_failed_expectations, verdict_line
-  use mpm_external_force, only: prepare_loads
   use mpm_increments, only: begin_step, schedule_t, start_increment
   use mpm_input_deck, only: read_deck
   use mpm_interruption, only: catch_signals, received_signal, signal_interrupt
@@ -68,20 +67,37 @@ contains
         exit_code = merge(exit_interrupted, exit_terminated, received_signal() == signal_interrupt)
         return
       end if
-      variant = model
       info%formulation = formulation_name(formulation(i))
-      call choose_formulation(variant, formulation(i), size(options%compare) > 0)
-      if (options%check_tangent) then
-        call run_tangent_check(code, variant, error)
-      else if (options%estimate) then
-        call run_estimate(code, variant, options, error)
+      if (i < size(formulation)) then
+        variant = model
+        call run_variant(code, variant, formulation(i), deck, info, options, error)
       else
-        call run_formulation(code, variant, deck, info, options, error)
+        call run_variant(code, model, formulation(i), deck, info, options, error)
       end if
       if (allocated(error)) return
       exit_code = max(exit_code, code)
     end do
   end subroutine run_job
+
+  !> What the options ask for, with one formulation.
+  subroutine run_variant(exit_code, model, formulation, deck, info, options, error)
+    integer, intent(out)          :: exit_code
+    type(model_t), intent(inout)  :: model       !! used up
+    integer, intent(in)           :: formulation !! formulation_*
+    type(deck_t), intent(in)      :: deck
+    type(run_info_t), intent(in)  :: info
+    type(command_line_t), intent(in) :: options
+    type(error_t), allocatable, intent(out) :: error
+
+    call choose_formulation(model, formulation, size(options%compare) > 0)
+    if (options%check_tangent) then
+      call run_tangent_check(exit_code, model, error)
+    else if (options%estimate) then
+      call run_estimate(exit_code, model, options, error)
+    else
+      call run_formulation(exit_code, model, deck, info, options, error)
+    end if
+  end subroutine run_variant
 
   !> Deck and model; warnings go to stderr, as part of the error if there is one.
   subroutine read_model(model, deck, warnings, options, error)
@@ -159,7 +175,7 @@ contains
     type(restart_t)      :: restart
     type(run_estimate_t) :: estimate
     type(error_t), allocatable :: failure
-    character(:), allocatable  :: folder
+    character(:), allocatable  :: folder, text
 
     exit_code = exit_ok
     if (len(options%restart) > 0) then
@@ -191,6 +207,7 @@ contains
     restart%deck_signature = deck_signature(deck)
     restart%formulation = info%formulation
     restart%written_by = info%version//" "//info%git
+    if (.not. options%quiet .and. (options%check .or. options%verbose)) text = model_text(model)
     call solve_job(output, state, model, restart, options%check, options%max_memory, &
                    failure)
     if (allocated(failure)) then
@@ -200,7 +217,8 @@ contains
       exit_code = exit_expectation
     end if
     call close_output(output, model, state, exit_code, error)
-    if (.not. options%quiet) call print_summary(output, paths, model, options)
+    if (allocated(text)) write (output_unit, "(a)") text
+    if (.not. options%quiet) call print_summary(output, paths, model%job, options%check)
     if (options%quiet .and. exit_code == exit_expectation) call print_failures(output)
     if (allocated(failure)) call move_alloc(failure, error)
   end subroutine run_formulation
@@ -237,20 +255,19 @@ contains
   end subroutine open_restarted
 
   !> What was run, what came out and where it is.
-  subroutine print_summary(output, paths, model, options)
+  subroutine print_summary(output, paths, job, only_check)
     type(run_output_t), intent(in)   :: output
     type(result_paths_t), intent(in) :: paths
-    type(model_t), intent(in)        :: model
-    type(command_line_t), intent(in) :: options
+    character(*), intent(in)         :: job
+    logical, intent(in)              :: only_check
     integer :: i
 
-    if (options%check .or. options%verbose) write (output_unit, "(a)") model_text(model)
-    if (.not. options%check) then
+    if (.not. only_check) then
       do i = 1, size(output%verdict)
         write (output_unit, "(a)") verdict_line(output%verdict(i))
       end do
     end if
-    write (output_unit, "(a)") model%job//": log "//paths%log//", history "//paths%history// &
+    write (output_unit, "(a)") job//": log "//paths%log//", history "//paths%history// &
       ", fields "//paths%points//" and "//paths%mesh
   end subroutine print_summary
 
@@ -292,7 +309,6 @@ contains
     exit_code = exit_ok
     call make_body(body, model)
     call open_system(system, body)
-    call prepare_loads(model%step(1)%load, model%mesh, model%points)
     call begin_step(schedule, 1, model%step(1)%schedule, [real(dp) ::])
     call start_increment(schedule)
     call prepare_increment(system, body, model, schedule, 0.0_dp, error)

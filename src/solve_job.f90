@@ -14,7 +14,7 @@ module mpm_solve_job
   use mpm_limit_load, only: begin_watch, watch_increment
   use mpm_limit_note, only: note_limit_load
   use mpm_linear_solver, only: analyse, solver_memory, solver_ok
-  use mpm_material_points, only: points_t, sort_points
+  use mpm_material_points, only: hand_over, points_t, sort_points
   use mpm_mesh_layout, only: lay_out_mesh
   use mpm_model, only: formulation_fbar, formulation_standard, model_t
   use mpm_model_signature, only: model_signature
@@ -44,7 +44,7 @@ contains
   subroutine solve_job(output, state, model, restart, only_check, max_memory, error)
     type(run_output_t), intent(inout) :: output        !! open
     type(run_state_t), intent(out)    :: state         !! after the last accepted increment
-    type(model_t), intent(inout)      :: model         !! at time zero; its conditions are prepared
+    type(model_t), intent(inout)      :: model         !! at time zero; its points are handed over
     type(restart_t), intent(inout)    :: restart       !! what run it is, perhaps loaded; emptied
     logical, intent(in)               :: only_check    !! write increment 0, do not solve
     real(dp), intent(in)              :: max_memory    !! allowed [GB], 0 = any
@@ -52,13 +52,10 @@ contains
     type(analysis_t) :: analysis
     integer :: i, first
 
-    call make_body(analysis%body, model)
     restart%model_signature = model_signature(model)
+    call make_body(analysis%body, model)
     call open_system(analysis%system, analysis%body)
     analysis%max_memory = max_memory
-    do i = 1, size(model%step)
-      call prepare_loads(model%step(i)%load, model%mesh, model%points)
-    end do
     call begin_run(analysis, output, state, model, restart, error)
     first = max(1, analysis%schedule%step)
     do i = first, size(model%step)
@@ -251,13 +248,18 @@ contains
     if (.not. allocated(error)) call obey_requests(analysis, output, model, error)
   end subroutine close_increment
 
-  !> The body at time zero; with the standard formulation every element is its own patch.
+  !> The body at time zero; with the standard formulation every element is its own patch. Loads are
+  !! prepared while the model still has its points: they become those of the body, without a copy.
   subroutine make_body(body, model)
-    type(body_t), intent(out) :: body
-    type(model_t), intent(in) :: model
+    type(body_t), intent(out)    :: body
+    type(model_t), intent(inout) :: model !! out: of its points only their number is left
+    integer :: i
 
+    do i = 1, size(model%step)
+      call prepare_loads(model%step(i)%load, model%mesh, model%points)
+    end do
     body%mesh = model%mesh
-    body%points = model%points
+    call hand_over(model%points, body%points)
     call sort_points(body%points)
     body%surface = model%surface
     body%material = model%material

@@ -12,7 +12,6 @@ program fuzz_driver
   use mpm_deck_card, only: deck_t
   use mpm_diagnostics, only: diagnostics_t, to_error
   use mpm_error, only: error_t, exit_deck, exit_ok
-  use mpm_external_force, only: prepare_loads
   use mpm_increments, only: begin_step, schedule_t, start_increment
   use mpm_input_deck, only: read_deck
   use mpm_kinds, only: dp
@@ -89,10 +88,9 @@ contains
 
     call make_body(body, model)
     call open_system(system, body)
-    call prepare_loads(model%step(1)%load, model%mesh, model%points)
     call begin_step(schedule, 1, model%step(1)%schedule, [real(dp) ::])
     call start_increment(schedule)
-    call prepare_increment(system, body, model, schedule, error)
+    call prepare_increment(system, body, model, schedule, 0.0_dp, error)
     call free_system(system)
   end subroutine try_increment
 

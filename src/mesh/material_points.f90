@@ -308,11 +308,10 @@ contains
 
   !> Gives the arrays of all points away without copying them.
   pure subroutine hand_over(from, to)
-    type(points_t), intent(inout) :: from !! empty afterwards
+    type(points_t), intent(inout) :: from !! without arrays afterwards; n still tells how many there were
     type(points_t), intent(out)   :: to
 
     to%n = from%n
-    from%n = 0
     call move_alloc(from%x, to%x)
     call move_alloc(from%u, to%u)
     call move_alloc(from%id, to%id)
