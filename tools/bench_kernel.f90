@@ -12,7 +12,7 @@ program bench_kernel
   implicit none
 
   integer, parameter :: n_cells(4) = [3, 5, 11, 25]  !! along an edge, of six tetrahedra each
-  integer, parameter :: n_batches = 5                !! the best one counts
+  integer, parameter :: n_batches = 3                !! the best one counts
   integer, parameter :: n_updates = 200000           !! point updates of a batch at least
   integer(c_long), parameter :: triad_length = 30000000_c_long !! 720 MB: more than caches hold
 

@@ -40,7 +40,7 @@ CASES = (
     Case("footing-522", FOOTING, is_series=True, is_quick=True),
     Case("footing-1300", FOOTING, "medium", 6, is_series=True, is_quick=True),
     Case("footing-2500", FOOTING, "fine", 4, is_series=True),
-    Case("footing-8000", FOOTING, "finer", 2, most_runs=3, is_series=True),
+    Case("footing-8000", FOOTING, "finer", 2, most_runs=2, is_series=True),
     Case("footing-16000", FOOTING, "finest", 2, most_runs=1, is_series=True),
 )
 
