@@ -56,8 +56,8 @@ def kernel_of(cost=0.1, largest=0.1):
     lines = [
         {"kind": kind, "way": way, "points": n, "plastic": 0, "wall": c * f, "cpu": c * f}
         for kind in FLOPS
-        for way, f in (("blocked", 1.0), ("pointwise", 5.0))
-        for n, c in ((1000, cost), (1000000, largest))
+        for way, f in (("batched", 1.0), ("residual", 0.6), ("pointwise", 5.0))
+        for n, c in ((1000, 0.01), (10000, cost), (1000000, largest))
     ]
     return {"peak_gflops": 100.0, "triad_gbytes": 10.0, "lines": lines, "difference": 1e-14}
 
@@ -230,7 +230,7 @@ def test_threads_are_compared_by_wall_time(found):
 
 def test_roofline_counts_operations_and_bytes():
     rows = roofline([kernel_of(0.1, 0.2)])
-    row = next(row for row in rows if (row["kind"], row["way"]) == ("plastic", "blocked"))
+    row = next(row for row in rows if (row["kind"], row["way"]) == ("plastic", "batched"))
     assert row["points"] == 1000000
     assert row["gflops"] == pytest.approx(FLOPS["plastic"] / 200.0)
     assert row["gbytes"] == pytest.approx(BYTES / 200.0)
@@ -243,7 +243,7 @@ def test_kernel_program_is_read(tmp_path):
     program = tmp_path / "program"
     program.write_text(
         "#!/bin/sh\necho peak_gflops 90.5\necho triad_gbytes 11.5\n"
-        'echo "kernel elastic blocked 1782 0 .5 .6"\necho "difference elastic 1782 1.0E-14"\n'
+        'echo "kernel elastic batched 1782 0 .5 .6"\necho "difference elastic 1782 1.0E-14"\n'
     )
     program.chmod(0o755)
     found = measure_kernel(program, 1)

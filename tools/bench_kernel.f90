@@ -1,8 +1,8 @@
 !> What the stress update of all points costs, and what the machine could do at most.
 !!
-!! Boxes of some thousand to a million points, all elastic or all plastic, in blocks as the program
-!! does it and point by point with the checked update. One line per measurement; the same for the
-!! machine: multiply-adds in registers, and STREAM's triad.
+!! Boxes of some thousand to a million points, all elastic or all plastic, in batches as the program
+!! does it, with and without moduli, and point by point with the checked update. One line per
+!! measurement; the same for the machine: multiply-adds in registers, and STREAM's triad.
 program bench_kernel
   use, intrinsic :: iso_c_binding, only: c_double, c_long
   use kernel_body, only: body_t, make_body, update_by_point
@@ -14,6 +14,9 @@ program bench_kernel
   integer, parameter :: n_cells(4) = [3, 5, 11, 25]  !! along an edge, of six tetrahedra each
   integer, parameter :: n_batches = 3                !! the best one counts
   integer, parameter :: n_updates = 200000           !! point updates of a batch at least
+  integer, parameter :: way_batched = 1              !! as the program does it
+  integer, parameter :: way_residual = 2             !! the same without moduli
+  integer, parameter :: way_pointwise = 3            !! the checked update
   integer(c_long), parameter :: triad_length = 30000000_c_long !! 720 MB: more than caches hold
 
   !> Seconds of the best batch, per point.
@@ -50,38 +53,40 @@ program bench_kernel
 
 contains
 
-  !> Measures both ways on one body and writes a line for each.
+  !> Measures all ways on one body and writes a line for each.
   subroutine measure(kind, strength, n_cells)
     character(*), intent(in) :: kind !! word of the line
     real(dp), intent(in) :: strength !! sqrt(3 J2) at yield [force/length^2]
     integer, intent(in) :: n_cells   !! along an edge
     type(body_t) :: body
-    type(element_sums_t) :: blocked, pointwise
+    type(element_sums_t) :: batched, pointwise
     type(trial_state_t)  :: trial
     type(cost_t) :: cost
     real(dp) :: difference
 
     call make_body(body, n_cells, strength)
     call open_trial(trial, body%points%state)
-    call allocate_sums(blocked, body%mesh%n_el)
+    call allocate_sums(batched, body%mesh%n_el)
     call allocate_sums(pointwise, body%mesh%n_el)
-    call time_updates(cost, trial, blocked, body, by_point=.false.)
-    call write_line(kind, "blocked", cost, body%points%n, blocked%n_plastic)
-    call time_updates(cost, trial, pointwise, body, by_point=.true.)
+    call time_updates(cost, trial, batched, body, way_residual)
+    call write_line(kind, "residual", cost, body%points%n, batched%n_plastic)
+    call time_updates(cost, trial, batched, body, way_batched)
+    call write_line(kind, "batched", cost, body%points%n, batched%n_plastic)
+    call time_updates(cost, trial, pointwise, body, way_pointwise)
     call write_line(kind, "pointwise", cost, body%points%n, pointwise%n_plastic)
-    difference = maxval(abs(blocked%stress - pointwise%stress))/maxval(abs(pointwise%stress))
-    difference = max(difference, maxval(abs(blocked%moduli - pointwise%moduli)) &
+    difference = maxval(abs(batched%stress - pointwise%stress))/maxval(abs(pointwise%stress))
+    difference = max(difference, maxval(abs(batched%moduli - pointwise%moduli)) &
                      /maxval(abs(pointwise%moduli)))
     write (*, "(a,1x,a,1x,i0,1x,es10.3)") "difference", kind, body%points%n, difference
   end subroutine measure
 
   !> Times batches of updates from the same converged state; the first one warms up.
-  subroutine time_updates(cost, trial, sums, body, by_point)
+  subroutine time_updates(cost, trial, sums, body, way)
     type(cost_t), intent(out) :: cost            !! of the best batch
     type(trial_state_t), intent(inout) :: trial  !! overwritten
     type(element_sums_t), intent(inout) :: sums  !! overwritten
     type(body_t), intent(in) :: body             !! converged state, increment
-    logical, intent(in) :: by_point              !! point by point, else in blocks
+    integer, intent(in) :: way                   !! way_*
     real(dp) :: clock(2), scale
     integer(ip) :: ticks(2), rate
     integer :: batch, k, n
@@ -92,11 +97,11 @@ contains
       call cpu_time(clock(1))
       call system_clock(ticks(1))
       do k = 1, n
-        if (by_point) then
+        if (way == way_pointwise) then
           call update_by_point(trial, sums, body)
         else
           call update_points(trial, sums, body%points, body%material, body%kinematics, &
-                             body%element, .true.)
+                             body%element, with_moduli=way == way_batched)
         end if
       end do
       call system_clock(ticks(2), rate)

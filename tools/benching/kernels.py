@@ -5,29 +5,29 @@ from pathlib import Path
 
 from benching.running import environment
 
-# Operations per material point, counted from the source for three dimensions: +, -, *, / and roots
-# are one each, ln, exp and the functions of an angle 20. Symmetric moduli have 21 entries. The
-# checked update finds eigenvectors by rotations and forms all 36 moduli: it does more than that.
+# Operations per material point, counted from mpm_stress_batch and mpm_eigen_batch: +, -, *, / and
+# roots are one each; four sweeps of three rotations. The checked update does about the same, but
+# for all 36 moduli.
 OPERATIONS = (  # step, elastic, plastic
     ("trial b - 1 by push-forward", 138, 138),
-    ("eigenvalues and directions, in closed form", 212, 212),
-    ("three logarithms", 63, 63),
-    ("trial deviator and yield condition", 19, 19),
-    ("return, consistent principal moduli", 0, 51),
-    ("principal stresses", 9, 9),
-    ("dyads of the directions", 63, 63),
-    ("strain and stress, with flow b - 1 (three exponentials)", 60, 153),
-    ("spatial moduli", 450, 450),
-    ("Cauchy stress and sums over the element", 63, 63),
+    ("four sweeps of rotations", 642, 642),
+    ("logarithms", 93, 93),
+    ("trial deviator and yield condition", 18, 18),
+    ("return and its moduli", 0, 25),
+    ("principal stresses", 12, 12),
+    ("dyads and stress", 48, 48),
+    ("spatial moduli, 21 of them", 564, 564),
+    ("b - 1 after the return", 0, 120),
+    ("sums over the element", 55, 55),
 )
 FLOPS = {
     "elastic": sum(elastic for _, elastic, _ in OPERATIONS),
     "plastic": sum(plastic for _, _, plastic in OPERATIONS),
 }
-# Bytes per material point: number, material, b - 1, hardening, volume and J read; strain, b - 1,
-# hardening, J and stress written; the arrays of an element (increment, sums), over 11 points.
-BYTES = 80 + 160 + 40
-WAYS = ("blocked", "pointwise")
+# Bytes per material point. Read: place, element, material, b - 1, hardening, volume and J; written:
+# b - 1 and hardening; a part of the arrays of an element with 11 points: increment and sums.
+BYTES = 84 + 56 + 39
+WAYS = ("batched", "pointwise")  # with moduli
 
 
 def run_lines(program: Path, n_threads: int) -> list[list[str]]:

@@ -8,6 +8,8 @@ from benching.cases import DECK_SOLVERS, DEFAULT, Case
 from benching.kernels import BYTES, FLOPS, WAYS
 from benching.running import KERNELS, LINEAR, PARTS
 
+FEW = 5000  # points
+
 
 def median(runs: Sequence[dict], *path: str) -> float:
     """Median over runs of the value at a path of keys."""
@@ -144,11 +146,15 @@ def kernel_table(runs: Sequence[dict], clock: str = "cpu") -> dict[tuple[str, st
 
 
 def kernel_growth(table: dict[tuple[str, str, int], float]) -> float:
-    """Cost per point of the blocked update at the most points over the least at fewer points,
-    the worse of elastic and plastic."""
+    """Cost per point of the update in batches at the most points over the least at fewer points
+    (not so few that all fit into a cache of the core), the worse of elastic and plastic."""
     worst = 0.0
     for kind in FLOPS:
-        some = {n: cost for (k, way, n), cost in table.items() if (k, way) == (kind, WAYS[0])}
+        some = {
+            n: cost
+            for (k, way, n), cost in table.items()
+            if (k, way) == (kind, WAYS[0]) and n > FEW
+        }
         most = max(some)
         worst = max(worst, some[most] / min(cost for n, cost in some.items() if n < most))
     return worst
@@ -161,7 +167,7 @@ def roofline(runs: Sequence[dict]) -> list[dict]:
     n_points = max(n for _, _, n in table)
     rows = []
     for (kind, way, n), cost in table.items():
-        if n != n_points:
+        if n != n_points or way not in WAYS:
             continue
         flops, traffic = FLOPS[kind] / cost * 1e-3, BYTES / cost * 1e-3
         rows.append(

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from benching.cases import Case
 from benching.judging import Limit
-from benching.kernels import BYTES, FLOPS, OPERATIONS
+from benching.kernels import BYTES, FLOPS, OPERATIONS, WAYS
 from benching.measuring import (
     compare_solvers,
     exponents,
@@ -183,11 +183,14 @@ def kernels(found: dict) -> Table:
     rows = []
     for kind in FLOPS:
         for n in sorted({n for k, _, n in table if k == kind}):
-            blocked, pointwise = table[kind, "blocked", n], table[kind, "pointwise", n]
-            faster = wall[kind, "blocked", n] / two[kind, "blocked", n]
-            cells = (blocked, pointwise, pointwise / blocked, faster)
+            batched, pointwise = (table[kind, way, n] for way in WAYS)
+            faster = wall[kind, WAYS[0], n] / two[kind, WAYS[0], n]
+            residual = table[kind, "residual", n]
+            cells = (batched, residual, pointwise, pointwise / batched, faster)
             rows.append((kind, f"{n:,}", *(number(cell) for cell in cells)))
-    return ("points are", "points", "blocked", "pointwise", "ratio", "two threads, wall"), rows
+    head = ("points are", "points", "batched", "without moduli", "pointwise",
+            "pointwise / batched", "two threads, wall")  # fmt: skip
+    return head, rows
 
 
 def roof_rows(found: dict) -> Table:
