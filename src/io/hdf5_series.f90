@@ -23,7 +23,7 @@ module mpm_hdf5_series
   integer, parameter :: kind_int32 = 2
   integer, parameter :: kind_int64 = 3
   integer, parameter :: kind_uint8 = 4
-  integer, parameter :: deflate_level = 4
+  integer, parameter :: deflate_level = 1 !! nearly twice as fast as 4, files hardly larger
 
   !> How the rows of a dataset are stored.
   type :: series_layout_t

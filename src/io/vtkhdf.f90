@@ -75,7 +75,7 @@ contains
     call make_group(vtk%file, "/VTKHDF/PointData", error)
     call make_group(vtk%file, "/VTKHDF/CellData", error)
     call create_series(vtk%points, vtk%file, "/VTKHDF/Points", &
-                       series_layout_t(kind_float64, 3, chunk_for(n_points), .true.), error)
+                       series_layout_t(kind_float64, 3, chunk_for(n_points)), error)
     call create_cells(vtk%cells, vtk%file, n_cells, error)
     call create_steps(vtk%steps, vtk%file, error)
   end subroutine create_vtkhdf
