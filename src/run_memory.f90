@@ -15,7 +15,9 @@ module mpm_run_memory
 
   integer, parameter :: copies = 3          !! of mesh and points: as read, as chosen, as they move
   real(dp), parameter :: program = 3.0e7_dp !! code and libraries of the smallest run [bytes]
+  real(dp), parameter :: left_over = 1.08_dp !! with what was freed when the model was built
   real(dp), parameter :: gigabyte = 1.0e9_dp
+  integer, parameter :: full_tensors = 2*9 + 4, sums = 6 + 36 + 1 !! reals of an element
 
 contains
 
@@ -33,7 +35,7 @@ contains
     need = memory_of_model(model)
     what = "a run with "//integer_text(model%points%n)//" material points and "// &
            integer_text(model%mesh%n_el)//" elements"
-    n_bytes = int(need%points + need%mesh, ip) - int(bytes_of_copy(model), ip)
+    n_bytes = bytes_to_come(model)
     if (.not. has_room(n_bytes)) then
       call make_error(error, exit_solver, "error: not enough memory for "//what//", about "// &
                       real_text(megabytes(real(n_bytes, dp)))//" MB more are needed: expected "// &
@@ -42,6 +44,18 @@ contains
       call refuse(error, expected_peak(need), max_memory, what//", without its equations,")
     end if
   end subroutine check_memory
+
+  !> Memory that points and elements take beside the model itself.
+  pure integer(ip) function bytes_to_come(model) result(n_bytes)
+    type(model_t), intent(in) :: model
+    integer :: gradients
+
+    associate (n_dim => model%mesh%n_dim, n_el => model%mesh%n_el)
+      gradients = n_dim*(n_dim + 1)
+      n_bytes = 3_ip*bytes_of_points(model%points%n, n_dim) &
+                + int(n_el, ip)*8*(2*(gradients + n_dim + 2) + full_tensors + gradients + sums)
+    end associate
+  end function bytes_to_come
 
   !> Refuses to go on when the run is expected to take more than is allowed.
   subroutine check_limit(error, system, model, max_memory)
@@ -101,24 +115,19 @@ contains
   pure function memory_of_model(model) result(need)
     type(model_t), intent(in) :: model
     type(memory_need_t) :: need
-    integer, parameter :: trial = 20, start = 1, full_tensors = 2*9 + 4, sums = 6 + 36 + 1
+    integer, parameter :: trial = 20, start = 1 ! reals of a trial state; displacements kept
 
     need%program = program
     associate (n => model%points%n, n_dim => model%mesh%n_dim, n_el => model%mesh%n_el)
       need%points = real(copies, dp)*real(bytes_of_points(n, n_dim), dp) &
                     + 8.0_dp*real(trial + start*n_dim, dp)*real(n, dp)
+      need%points = left_over*need%points
       need%mesh = real(copies, dp)*bytes_of_mesh(model) &
                   + 8.0_dp*real(full_tensors + n_dim*(n_dim + 1) + sums, dp)*real(n_el, dp)
+      need%mesh = left_over*need%mesh
       need%saving = real(bytes_of_points(n, n_dim), dp)
     end associate
   end function memory_of_model
-
-  !> One copy of points and mesh: the model itself.
-  pure real(dp) function bytes_of_copy(model) result(n_bytes)
-    type(model_t), intent(in) :: model
-
-    n_bytes = real(bytes_of_points(model%points%n, model%mesh%n_dim), dp) + bytes_of_mesh(model)
-  end function bytes_of_copy
 
   !> One copy of the mesh and its patches.
   pure real(dp) function bytes_of_mesh(model) result(n_bytes)

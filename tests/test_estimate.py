@@ -122,11 +122,11 @@ def test_predicted_results_are_those_of_the_run(tessera_release, run_program, tm
 
 def test_too_large_run_is_refused_before_it_begins(tessera, run_program, tmp_path):
     (tmp_path / "job.inp").write_text(SLIDE, encoding="utf-8")
-    run = run_program(tessera, "--lax", "--max-memory", "0.045", "-o", "results", "job.inp")
+    run = run_program(tessera, "--lax", "--max-memory", "0.0467", "-o", "results", "job.inp")
     assert run.code == 5
     assert re.fullmatch(
         r"error: the run with 6000 material points and 3001 equations needs about [0-9.]+ MB, and "
-        r"--max-memory allows 45 MB: expected a higher limit, a coarser mesh, fewer points per "
+        r"--max-memory allows 46.7 MB: expected a higher limit, a coarser mesh, fewer points per "
         r"element or smaller patches\n",
         run.stderr,
     )
@@ -142,10 +142,10 @@ def test_points_that_do_not_fit_are_refused_at_once(tessera, run_program, tmp_pa
 
 def test_estimate_above_the_limit_is_told_and_refused(tessera, run_program, tmp_path):
     (tmp_path / "job.inp").write_text(SLIDE, encoding="utf-8")
-    run = run_program(tessera, "--lax", "--max-memory", "0.045", "--estimate", "job.inp")
+    run = run_program(tessera, "--lax", "--max-memory", "0.0467", "--estimate", "job.inp")
     assert run.code == 5
-    assert megabytes_of(run.stdout, "memory of the run") > 45.0
-    assert "and --max-memory allows 45 MB" in run.stderr
+    assert megabytes_of(run.stdout, "memory of the run") > 46.7
+    assert "and --max-memory allows 46.7 MB" in run.stderr
 
 
 def test_run_that_grows_beyond_the_limit_can_go_on(tessera, run_program, tmp_path):
