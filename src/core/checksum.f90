@@ -4,7 +4,8 @@ module mpm_checksum
   use mpm_kinds, only: dp, ip
   implicit none
   private
-  public :: checksum_text, checksum_of_integers, checksum_of_reals, checksum_of_text
+  public :: checksum_text, checksum_of_integers, checksum_of_longs, checksum_of_reals
+  public :: checksum_of_text
 
   interface
     !> CRC-32 of bytes, going on from that of the bytes before.
@@ -52,6 +53,17 @@ contains
     if (size(values) > 0) checksum = int(c_crc32(int(before, c_long), c_loc(values), &
       int(storage_size(values)/8, c_size_t)*size(values, kind=c_size_t)), ip)
   end function checksum_of_integers
+
+  !> Goes on with integers of 64 bits.
+  function checksum_of_longs(before, values) result(checksum)
+    integer(ip), intent(in) :: before                        !! checksum so far, 0 at first
+    integer(ip), intent(in), target, contiguous :: values(:) !! (n)
+    integer(ip) :: checksum                                  !! 0 .. 2^32 - 1
+
+    checksum = before
+    if (size(values) > 0) checksum = int(c_crc32(int(before, c_long), c_loc(values), &
+      int(storage_size(values)/8, c_size_t)*size(values, kind=c_size_t)), ip)
+  end function checksum_of_longs
 
   !> A checksum as eight hexadecimal digits.
   pure function checksum_text(checksum) result(text)

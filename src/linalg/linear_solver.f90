@@ -7,19 +7,23 @@ module mpm_linear_solver
   use mpm_memory, only: has_room
   use mpm_openblas_binding, only: dtrsm, openblas_set_num_threads
   use mpm_umfpack_binding, only: control_ordering, control_refinements, control_strategy, &
-    info_peak, info_peak_estimate, info_rcond, info_unit, ordering_cholmod, status_ok, &
-    status_ordering_failed, status_out_of_memory, strategy_symmetric, system_a, &
+    info_entries, info_flops, info_peak, info_peak_estimate, info_rcond, info_unit, &
+    ordering_cholmod, status_ok, status_ordering_failed, status_out_of_memory, &
+    strategy_symmetric, system_a, &
     umfpack_control, umfpack_dl_defaults, umfpack_dl_free_numeric, umfpack_dl_free_symbolic, &
     umfpack_dl_numeric, umfpack_dl_solve, umfpack_dl_symbolic, umfpack_info
   implicit none
   private
   public :: linear_solver_t, analyse, factorize, solve, free_solver
+  public :: has_factors, has_mumps, is_analysed, work_of_factors, work_of_solution
   public :: solver_ok, solver_singular, solver_memory, solver_not_finite
 
   integer, parameter :: solver_ok = 0       !! done
   integer, parameter :: solver_singular = 1 !! matrix singular to machine precision, or not finite
   integer, parameter :: solver_memory = 2   !! out of memory
   integer, parameter :: solver_not_finite = 3 !! the solution holds infinity or no numbers
+
+  logical, parameter :: has_mumps = .false.  !! this program was built with MUMPS
 
   integer(ip), parameter :: blas_buffer = 135000000_ip !! a little more than OpenBLAS takes [bytes]
   real(dp), parameter :: smallest_rcond = 1.0e-16_dp !! pivot ratio below which no digit is left
@@ -38,6 +42,10 @@ module mpm_linear_solver
     integer     :: n_analyses = 0       !! analyses so far
     integer     :: n_factorizations = 0 !! factorisations so far
   end type linear_solver_t
+
+  ! Work, in entries of the factors that are read from memory. Measured: theory.md (15i).
+  real(dp), parameter :: flops_per_entry = 65.0_dp !! of a factorisation, in the time of one entry
+  real(dp), parameter :: passes = 16.0_dp          !! over the factors while they are made
 
   !> OpenBLAS has its working memory: it belongs to the process, not to a solver.
   logical, save :: has_buffer = .false.
@@ -130,6 +138,36 @@ contains
     outcome = outcome_of(status)
     if (outcome == solver_ok .and. .not. all(ieee_is_finite(x))) outcome = solver_not_finite
   end subroutine solve
+
+  !> Whether there is an analysis, so that a matrix can be factorised.
+  pure logical function is_analysed(solver)
+    type(linear_solver_t), intent(in) :: solver
+
+    is_analysed = c_associated(solver%symbolic)
+  end function is_analysed
+
+  !> Whether there are factors to solve with.
+  pure logical function has_factors(solver)
+    type(linear_solver_t), intent(in) :: solver
+
+    has_factors = c_associated(solver%numeric)
+  end function has_factors
+
+  !> Work of the last factorisation, counted and not timed, so that it is the same in every run.
+  !! Source: theory.md (15i).
+  pure real(dp) function work_of_factors(solver) result(work)
+    type(linear_solver_t), intent(in) :: solver !! factorised
+
+    work = solver%info(info_flops)/flops_per_entry + passes*solver%info(info_entries)
+  end function work_of_factors
+
+  !> Work of a solution with the factors and a product with the matrix. Source: theory.md (15i).
+  pure real(dp) function work_of_solution(solver, matrix) result(work)
+    type(linear_solver_t), intent(in) :: solver !! factorised
+    type(csc_matrix_t), intent(in) :: matrix
+
+    work = solver%info(info_entries) + real(matrix%nnz, dp)
+  end function work_of_solution
 
   !> Releases the handles; harmless when there are none. Counts stay.
   subroutine free_solver(solver)

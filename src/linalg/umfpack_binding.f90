@@ -8,7 +8,8 @@ module mpm_umfpack_binding
   public :: umfpack_dl_free_symbolic, umfpack_dl_free_numeric
   public :: umfpack_control, umfpack_info
   public :: control_strategy, control_ordering, control_refinements
-  public :: strategy_symmetric, ordering_cholmod, info_peak, info_peak_estimate, info_rcond, info_unit
+  public :: strategy_symmetric, ordering_cholmod, info_flops, info_entries
+  public :: info_peak, info_peak_estimate, info_rcond, info_unit
   public :: info_entries_l, info_entries_u, info_flops_estimate, info_symmetric_entries
   public :: info_symmetric_flops, info_variable_peak
   public :: status_ok, status_ordering_failed, status_out_of_memory, status_singular, system_a
@@ -20,6 +21,8 @@ module mpm_umfpack_binding
   integer, parameter :: control_refinements = 7  !! position of UMFPACK_IRSTEP
   integer, parameter :: control_ordering = 10    !! position of UMFPACK_ORDERING
   integer, parameter :: info_unit = 3            !! position of UMFPACK_SIZE_OF_UNIT
+  integer, parameter :: info_flops = 42          !! position of UMFPACK_FLOPS
+  integer, parameter :: info_entries = 64        !! position of UMFPACK_LU_ENTRIES
   integer, parameter :: info_peak_estimate = 21  !! position of UMFPACK_PEAK_MEMORY_ESTIMATE
   integer, parameter :: info_flops_estimate = 22 !! position of UMFPACK_FLOPS_ESTIMATE
   integer, parameter :: info_entries_l = 23      !! position of UMFPACK_LNZ_ESTIMATE

@@ -4,7 +4,7 @@ module sparse_samples
   use mpm_kinds, only: dp, ip
   implicit none
   private
-  public :: from_dense, grid_matrix, dense_solution
+  public :: from_dense, grid_matrix, random_matrix, dense_solution
 
 contains
 
@@ -47,6 +47,21 @@ contains
       end do
     end do
   end function grid_matrix
+
+  !> Unsymmetric matrix with a dominant diagonal and entries by chance.
+  function random_matrix(n, seed) result(dense)
+    integer, intent(in) :: n    !! order
+    integer, intent(in) :: seed !! another one, another matrix
+    real(dp) :: dense(n, n)     !! regular, no entry is zero
+    integer :: i, j
+
+    do j = 1, n
+      do i = 1, n
+        dense(i, j) = 0.1_dp*sin(real(1000*seed + 37*i + 11*j*j, dp)**2)
+      end do
+      dense(j, j) = 1.0_dp + 0.05_dp*real(j, dp)
+    end do
+  end function random_matrix
 
   !> Solution of a dense system by Gauss elimination with row pivoting.
   function dense_solution(dense, rhs) result(x)

@@ -1,0 +1,52 @@
+!> Ways to solve the linear system of a correction (LINEAR SOLVER of *CONTROLS).
+module mpm_linear_method
+  implicit none
+  private
+  public :: chosen_method, least_recycled, method_name, method_of_name
+  public :: method_automatic, method_direct, method_mumps, method_recycled
+
+  integer, parameter :: method_automatic = 0 !! by the number of unknowns
+  integer, parameter :: method_direct = 1    !! UMFPACK, new factors for every correction
+  integer, parameter :: method_recycled = 2  !! UMFPACK, factors that are kept, and GMRES
+  integer, parameter :: method_mumps = 3     !! MUMPS, new factors for every correction
+
+  integer, parameter :: least_recycled = 2000 !! unknowns from which recycling is the choice
+
+contains
+
+  !> The method that serves a number of unknowns.
+  pure integer function chosen_method(asked, n) result(method)
+    integer, intent(in) :: asked !! method_*
+    integer, intent(in) :: n     !! unknowns
+
+    method = asked
+    if (asked == method_automatic) method = merge(method_recycled, method_direct, &
+                                                  n >= least_recycled)
+  end function chosen_method
+
+  !> Name of a method in the deck.
+  pure function method_name(method) result(name)
+    integer, intent(in) :: method !! method_*
+    character(:), allocatable :: name
+
+    select case (method)
+    case (method_direct); name = "DIRECT"
+    case (method_recycled); name = "RECYCLED"
+    case (method_mumps); name = "MUMPS"
+    case default; name = ""
+    end select
+  end function method_name
+
+  !> Method that a deck names; automatic without a name.
+  pure integer function method_of_name(name) result(method)
+    character(*), intent(in) :: name !! upper case
+
+    select case (name)
+    case ("DIRECT"); method = method_direct
+    case ("RECYCLED"); method = method_recycled
+    case ("MUMPS"); method = method_mumps
+    case default; method = method_automatic
+    end select
+  end function method_of_name
+
+end module mpm_linear_method
