@@ -13,7 +13,7 @@ module mpm_solve_job
   use mpm_kinds, only: dp
   use mpm_limit_load, only: begin_watch, watch_increment
   use mpm_limit_note, only: note_limit_load
-  use mpm_linear_solver, only: analyse, solver_memory, solver_ok
+  use mpm_linear_solver, only: solver_memory, solver_ok
   use mpm_material_points, only: hand_over, points_t, sort_points
   use mpm_mesh_layout, only: lay_out_mesh
   use mpm_model, only: formulation_fbar, formulation_standard, model_t
@@ -21,6 +21,7 @@ module mpm_solve_job
   use mpm_patches, only: patches_of_single_elements
   use mpm_point_location, only: locate_points, location_report_t, lost_is_error
   use mpm_point_update, only: accept_points
+  use mpm_recycled_solver, only: prepare_factors
   use mpm_restart_load, only: restore_point
   use mpm_restart_output, only: restore_output
   use mpm_restart_point, only: keep_point, obey_requests, save_point
@@ -323,7 +324,7 @@ contains
       call memory_error(error, system, "pattern")
       return
     end if
-    call analyse(system%solver, system%tangent, outcome)
+    call prepare_factors(system%recycler, system%solver, system%tangent, outcome)
     if (outcome == solver_memory) then
       call memory_error(error, system, "analysis")
     else if (outcome /= solver_ok) then

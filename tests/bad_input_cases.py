@@ -3053,6 +3053,17 @@ error: no convergence at the smallest increment 1: too many iterations (step 'PU
         arguments=("-q",),
     ),
     Case(
+        "linear_solver_that_is_none",
+        PLANE,
+        [("*BOUNDARY\n", "*CONTROLS, LINEAR SOLVER=CHOLESKY\n*BOUNDARY\n")],
+        2,
+        text("""
+job.inp:19:26: error: LINEAR SOLVER of *CONTROLS is 'CHOLESKY': expected DIRECT, RECYCLED or MUMPS
+   19 | *CONTROLS, LINEAR SOLVER=CHOLESKY
+      |                          ^~~~~~~~
+"""),
+    ),
+    Case(
         "point_lost",
         PLANE,
         [

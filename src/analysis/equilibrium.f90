@@ -8,9 +8,11 @@ module mpm_equilibrium
   use mpm_interruption, only: received_signal
   use mpm_kinds, only: dp
   use mpm_kinematics, only: find_largest_stretch
-  use mpm_linear_solver, only: factorize, solve, solver_memory, solver_not_finite, solver_ok
-  use mpm_nodal_frames, only: in_local_axes, part_along
+  use mpm_linear_method, only: method_automatic
+  use mpm_linear_solver, only: solver_memory, solver_not_finite, solver_ok
+  use mpm_residual_norm, only: force_scale, relative, worst_node
   use mpm_system, only: body_t, evaluate, evaluate_force, evaluation_inverted, evaluation_ok, system_t
+  use mpm_tangent_solution, only: choose_accuracy, factorize_again, forcing_t, solve_tangent
   implicit none
   private
   public :: find_equilibrium, outcome_text
@@ -40,6 +42,7 @@ module mpm_equilibrium
     logical  :: eigenvalues = .false. !! look for extreme eigenvalues of the tangent in the end
     logical  :: prediction = .true.   !! start from the last increment where that is near
     real(dp) :: max_stretch = 2.0_dp  !! largest |ln(principal stretch)| in one increment [-]
+    integer  :: linear_solver = method_automatic !! method_*
   end type newton_settings_t
 
   !> What Newton's method did in one attempt at an increment.
@@ -49,6 +52,8 @@ module mpm_equilibrium
     real(dp), allocatable :: residual(:)   !! (0:n_iterations)  relative residual [-], index 0 before the first correction
     integer, allocatable  :: backtracks(:) !! (n_iterations)
     real(dp), allocatable :: seconds(:, :) !! (5, n_iterations)  CPU: kinematics, stress, assembly, factorisation, solve [s]
+    integer, allocatable  :: gmres(:)      !! (n_iterations)  iterations of GMRES, 0 = none
+    logical, allocatable  :: is_new(:)     !! (n_iterations)  the factors are of this tangent
     integer :: worst_node = 0              !! node of the largest residual
     integer :: worst_element = 0           !! inverted element or element of a failed point, 0 if none
     integer :: worst_point = 0             !! id of a failed point, 0 if none
@@ -71,6 +76,7 @@ module mpm_equilibrium
     logical  :: moved = .false.          !! the start already has the prescribed displacements
     real(dp) :: norm = 0.0_dp            !! of the residual [force]
     real(dp) :: stiffness = 0.0_dp       !! largest entry of the tangent [force/length]
+    type(forcing_t) :: forcing           !! accuracy of the corrections
   end type newton_state_t
 
 contains
@@ -106,10 +112,11 @@ contains
     end if
     if (.not. report%predicted) call iterate(newton, system, report, body, settings)
     if (report%outcome == outcome_converged) call judge_stretch(report, system, settings)
+    if (report%outcome == outcome_converged) call judge_tangent(report, system, body, settings)
     if (report%outcome == outcome_converged .and. settings%eigenvalues) then
       call find_eigenvalues(report%eigenvalues, system%solver, system%tangent)
     end if
-    call find_worst_node(report, system)
+    report%worst_node = worst_node(system)
     call close_report(report)
   end subroutine find_equilibrium
 
@@ -125,6 +132,7 @@ contains
     report%worst_element = 0
     report%worst_point = 0
     newton%moved = .false.
+    newton%forcing = forcing_t()
     system%u = 0.0_dp
     call measure(newton, system, report, body, 0, with_moduli)
     report%at_rest = report%residual(0)
@@ -164,7 +172,7 @@ contains
 
     do iteration = 1, settings%max_iterations
       if (report%outcome /= outcome_converged) exit
-      call correct(newton, system, report, body, iteration)
+      call correct(newton, system, report, body, settings, iteration)
       if (report%outcome /= outcome_converged) exit
       call step(newton, system, report, body, settings, iteration)
       if (report%outcome /= outcome_converged) exit
@@ -187,16 +195,34 @@ contains
     report%worst_element = element
   end subroutine judge_stretch
 
+  !> Factors of the last tangent where they matter in themselves: for its eigenvalues, and where
+  !! the body went so far that something may not be held.
+  subroutine judge_tangent(report, system, body, settings)
+    type(newton_report_t), intent(inout) :: report !! converged; perhaps singular
+    type(system_t), intent(inout)        :: system
+    type(body_t), intent(in)             :: body
+    type(newton_settings_t), intent(in)  :: settings
+    integer :: outcome
+
+    if (.not. settings%eigenvalues .and. maxval(abs(system%u)) &
+        <= maxval(maxval(body%mesh%x, dim=2) - minval(body%mesh%x, dim=2))) return
+    call factorize_again(system, outcome)
+    if (outcome /= solver_ok) report%outcome = merge(outcome_memory, outcome_singular, &
+                                                     outcome == solver_memory)
+    if (system%dofs%n > 0) report%rcond = min(report%rcond, system%solver%rcond)
+  end subroutine judge_tangent
+
   !> Tangent, factors and the correction x. The first one from rest carries the prescribed
   !! displacement.
-  subroutine correct(newton, system, report, body, iteration)
+  subroutine correct(newton, system, report, body, settings, iteration)
     type(newton_state_t), intent(inout)  :: newton
     type(system_t), intent(inout)        :: system
     type(newton_report_t), intent(inout) :: report
     type(body_t), intent(in)             :: body
+    type(newton_settings_t), intent(in)  :: settings
     integer, intent(in)                  :: iteration
     real(dp), allocatable :: force(:, :), load(:), rhs(:)
-    real(dp) :: clock(4)
+    real(dp) :: clock(2)
     integer :: outcome
 
     report%n_iterations = iteration
@@ -216,12 +242,16 @@ contains
       rhs = rhs - newton%x
     end if
     call cpu_time(clock(2))
-    call factorize(system%solver, system%tangent, outcome)
-    call cpu_time(clock(3))
+    call choose_accuracy(newton%forcing, norm2(rhs), merge(newton%norm, 0.0_dp, &
+                         iteration > 1 .or. newton%moved), report%residual(iteration - 1), &
+                         settings%tolerance)
+    call solve_tangent(newton%x, system, rhs, newton%forcing%accuracy, &
+                       settings%linear_solver, outcome)
     if (system%dofs%n > 0) report%rcond = min(report%rcond, system%solver%rcond)
-    if (outcome == solver_ok) call solve(system%solver, system%tangent, rhs, newton%x, outcome)
-    call cpu_time(clock(4))
-    report%seconds(3:5, iteration) = report%seconds(3:5, iteration) + (clock(2:4) - clock(1:3))
+    report%seconds(3:5, iteration) = report%seconds(3:5, iteration) &
+                                     + [clock(2) - clock(1), system%recycler%seconds]
+    report%gmres(iteration) = system%recycler%n_iterations
+    report%is_new(iteration) = system%recycler%is_new
     select case (outcome)
     case (solver_ok)
       allocate (load, mold=newton%x)
@@ -304,60 +334,11 @@ contains
     end if
     call gather_free(system%dofs, system%f_ext - system%f_int, newton%residual)
     newton%norm = norm2(newton%residual)
-    report%residual(iteration) = relative(newton%norm, force_scale(newton, system))
+    report%residual(iteration) = relative(newton%norm, force_scale(newton%stiffness, system))
     report%n_plastic = system%sums%n_plastic
     report%flowing(iteration) = report%n_plastic
     if (.not. newton%norm <= huge(1.0_dp)) report%outcome = outcome_stagnated
   end subroutine measure
-
-  !> Norm of external force and reactions, at least a millionth of stiffness times displacement:
-  !! a body that moves without stress has no other forces than rounding errors.
-  pure function force_scale(newton, system) result(scale)
-    type(newton_state_t), intent(in) :: newton
-    type(system_t), intent(in)       :: system
-    real(dp) :: scale !! [force]
-    logical :: reacts(size(system%u, 1), size(system%u, 2))
-
-    reacts = system%dofs%fixed .and. spread(system%dofs%active, 1, size(system%u, 1))
-    scale = max(norm2(part_along(system%dofs%frames, system%f_int, reacts) &
-                      + part_along(system%dofs%frames, system%f_ext, .not. reacts)), &
-                1.0e-6_dp*newton%stiffness*maxval(abs(system%u)))
-  end function force_scale
-
-  !> Residual over the scale of the forces; 0 when both vanish.
-  pure function relative(norm, scale) result(ratio)
-    real(dp), intent(in) :: norm, scale !! [force]
-    real(dp) :: ratio                   !! [-]
-
-    if (norm <= 0.0_dp) then
-      ratio = 0.0_dp
-    else
-      ratio = norm/max(scale, tiny(1.0_dp)/epsilon(1.0_dp), norm*1.0e-30_dp)
-    end if
-  end function relative
-
-  !> Node with the largest residual; the first one where it is no number, if there is any.
-  pure subroutine find_worst_node(report, system)
-    type(newton_report_t), intent(inout) :: report
-    type(system_t), intent(in)           :: system
-    real(dp) :: largest, here, local(size(system%u, 1))
-    integer :: a
-
-    largest = -1.0_dp
-    do a = 1, size(system%u, 2)
-      local = in_local_axes(system%dofs%frames, a, system%f_ext(:, a) - system%f_int(:, a))
-      local = merge(local, 0.0_dp, system%dofs%id(:, a) > 0)
-      if (.not. all(ieee_is_finite(local))) then
-        report%worst_node = a
-        return
-      end if
-      here = norm2(local)
-      if (here > largest) then
-        largest = here
-        report%worst_node = a
-      end if
-    end do
-  end subroutine find_worst_node
 
   !> Room for all iterations.
   pure subroutine open_report(report, max_iterations)
@@ -367,6 +348,8 @@ contains
     allocate (report%residual(0:max_iterations), source=0.0_dp)
     allocate (report%flowing(0:max_iterations), source=0)
     allocate (report%backtracks(max_iterations), source=0)
+    allocate (report%gmres(max_iterations), source=0)
+    allocate (report%is_new(max_iterations), source=.false.)
     allocate (report%seconds(5, max_iterations), source=0.0_dp)
   end subroutine open_report
 
@@ -382,6 +365,8 @@ contains
     call move_alloc(flowing, report%flowing)
     report%backtracks = report%backtracks(:report%n_iterations)
     report%seconds = report%seconds(:, :report%n_iterations)
+    report%gmres = report%gmres(:report%n_iterations)
+    report%is_new = report%is_new(:report%n_iterations)
   end subroutine close_report
 
   !> What an outcome means, for messages.

@@ -13,6 +13,7 @@ module mpm_system
   use mpm_material_points, only: open_trial, points_t, trial_state_t
   use mpm_mesh, only: mesh_t
   use mpm_patches, only: patches_t
+  use mpm_recycled_solver, only: recycler_t
   use mpm_sparsity, only: assembly_map_t
   use mpm_surface_points, only: surface_points_t
   implicit none
@@ -52,6 +53,7 @@ module mpm_system
     type(assembly_map_t)  :: map
     type(csc_matrix_t)    :: tangent
     type(linear_solver_t) :: solver
+    type(recycler_t)      :: recycler       !! its factors over corrections and increments
     integer :: worst_element = 0            !! inverted element or element of the failed point
     integer :: worst_point = 0              !! failed point
     real(dp) :: seconds(2) = 0.0_dp         !! CPU of all evaluations: kinematics, stress with internal force [s]

@@ -66,7 +66,7 @@ module mpm_deck_schema_rule
     integer        :: max_lines = 0    !! huge = any number
     integer        :: n_parameters = 0
     integer        :: n_layouts = 0
-    type(value_rule_t) :: parameter(7)
+    type(value_rule_t) :: parameter(8)
     type(layout_t)     :: layout(6)
   end type keyword_rule_t
 

@@ -88,6 +88,9 @@ contains
     call add_parameter(schema, value_rule_t("PREDICTION", value_choice, required=.false., &
                                             choices="ON|OFF", default="ON", &
                                             meaning="start from the last increment"))
+    call add_parameter(schema, value_rule_t("LINEAR SOLVER", value_choice, required=.false., &
+                                            choices="DIRECT|RECYCLED|MUMPS", &
+                                            meaning="without: by the number of unknowns"))
     call add_parameter(schema, value_rule_t("EIGENVALUES", value_flag, required=.false., &
                                             meaning="eigenvalues of the tangent in the log"))
     call add_parameter(schema, value_rule_t("RESET", value_flag, required=.false., &

@@ -165,7 +165,21 @@ contains
     if (report%backtracks(i) > 0) then
       text = text//" backtracks "//integer_text(report%backtracks(i))
     end if
+    text = text//linear_text(report, i)
   end function iteration_text
+
+  !> How the system of a correction was solved, where factors are kept.
+  pure function linear_text(report, i) result(text)
+    type(newton_report_t), intent(in) :: report !! of the attempt
+    integer, intent(in) :: i                    !! iteration
+    character(:), allocatable :: text
+
+    text = ""
+    if (.not. allocated(report%gmres)) return
+    if (i > size(report%gmres) .or. all(report%gmres == 0)) return
+    if (report%gmres(i) > 0) text = " gmres "//integer_text(report%gmres(i))
+    if (report%is_new(i)) text = text//" new factors"
+  end function linear_text
 
   !> Where an attempt failed.
   pure function worst_text(report) result(text)

@@ -16,10 +16,11 @@ module mpm_run_tables
   public :: run_tables_t, open_tables
   public :: append_history, append_iterations, append_ledger
 
-  character(13), parameter :: iteration_columns(10) = [character(13) :: "step", "increment", &
+  character(13), parameter :: iteration_columns(12) = [character(13) :: "step", "increment", &
     "attempt", "iteration", "residual", "kinematics", "stress", "assembly", "factorisation", &
-    "solve"]
+    "solve", "gmres", "new_factors"]
   integer, parameter :: n_iteration_integers = 4 !! leading columns of integers
+  integer, parameter :: column_of_gmres = 11
   character(13), parameter :: ledger_columns(20) = [character(13) :: "step", "increment", "time", &
     "count", "mass", "volume", "lost", "extrapolated", "centre", "checkerboard", "ghost_share", &
     "eigen_min", "eigen_max", "balance", "unknowns", "nonzeros", "factor_memory", "location", &
@@ -34,7 +35,7 @@ module mpm_run_tables
   !> The tables; each column is a dataset.
   type :: run_tables_t
     type(series_t), allocatable :: history(:)    !! step, increment, time, then the *HISTORY ones
-    type(series_t), allocatable :: iterations(:) !! (10)
+    type(series_t), allocatable :: iterations(:) !! (12)
     type(series_t), allocatable :: ledger(:)     !! (20)
   end type run_tables_t
 
@@ -91,14 +92,19 @@ contains
     type(series_t), allocatable, intent(out) :: series(:) !! without rows
     type(hdf5_file_t), intent(inout) :: file              !! JOB.vtkhdf
     type(error_t), allocatable, intent(inout) :: error    !! exit_file
-    integer :: i
+    integer :: i, kind
 
     allocate (series(size(iteration_columns)))
     call make_group(file, "/tessera/iterations", error)
     do i = 1, size(series)
+      select case (iteration_columns(i))
+      case ("step", "increment", "attempt", "iteration", "gmres", "new_factors")
+        kind = kind_int32
+      case default
+        kind = kind_float64
+      end select
       call create_series(series(i), file, "/tessera/iterations/"//trim(iteration_columns(i)), &
-                         series_layout_t(merge(kind_int32, kind_float64, &
-                                               i <= n_iteration_integers)), error)
+                         series_layout_t(kind), error)
     end do
   end subroutine create_iterations
 
@@ -152,10 +158,14 @@ contains
     type(newton_report_t), intent(in) :: report      !! of the attempt
     type(error_t), allocatable, intent(out) :: error !! exit_file
     real(dp) :: seconds(5)
-    integer :: i, j
+    integer :: i, j, linear(2)
 
     if (.not. allocated(report%residual)) return
     do i = 0, ubound(report%residual, 1)
+      linear = 0
+      if (i > 0 .and. allocated(report%gmres)) then
+        if (i <= size(report%gmres)) linear = [report%gmres(i), merge(1, 0, report%is_new(i))]
+      end if
       seconds = 0.0_dp
       if (i > 0 .and. allocated(report%seconds)) then
         if (i <= size(report%seconds, 2)) seconds = report%seconds(:, i)
@@ -167,6 +177,10 @@ contains
       call append_rows(tables%iterations(5), file, report%residual(i:i), error)
       do j = 1, size(seconds)
         call append_rows(tables%iterations(j + 5), file, seconds(j:j), error)
+      end do
+      do j = 1, size(linear)
+        call append_rows(tables%iterations(column_of_gmres + j - 1), file, [int(linear(j), ip)], &
+                         error)
       end do
     end do
   end subroutine append_iterations

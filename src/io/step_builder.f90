@@ -2,13 +2,15 @@
 module mpm_step_builder
   use mpm_boundary_builder, only: add_boundary, begin_boundary_step, boundary_state_t, &
     & close_boundary_step, fix_boundary, open_boundary, warn_released
-  use mpm_build_context, only: at_card, at_field, build_context_t, fault
+  use mpm_build_context, only: at_card, at_field, at_parameter, build_context_t, fault
   use mpm_deck_card, only: deck_t, field_count, field_real, has_parameter, parameter_choice, &
     & parameter_integer, parameter_real, parameter_text
   use mpm_expectation_builder, only: build_expectation
   use mpm_external_force, only: load_t
   use mpm_increments, only: schedule_settings_t
   use mpm_kinds, only: dp
+  use mpm_linear_method, only: method_mumps, method_name, method_of_name
+  use mpm_linear_solver, only: has_mumps
   use mpm_load_builder, only: add_loads, begin_load_step, close_load_step, load_state_t
   use mpm_model, only: history_request_t, model_t, step_t
   use mpm_output_builder, only: build_field_output, build_history
@@ -84,7 +86,7 @@ contains
         case ("STATIC", "GEOSTATIC")
           call build_procedure(step, deck, context, i)
         case ("CONTROLS")
-          call build_controls(step, deck, i)
+          call build_controls(step, deck, context, i)
         case ("BOUNDARY")
           call add_boundary(boundary, model, deck, context, i)
         case ("CLOAD", "DLOAD", "DSLOAD")
@@ -224,9 +226,10 @@ contains
 
   !> *CONTROLS: what it does not name stays as it was in the step before, or with RESET goes back
   !! to its default.
-  subroutine build_controls(step, deck, i_card)
+  subroutine build_controls(step, deck, context, i_card)
     type(step_t), intent(inout) :: step !! controls of the step before in, those of the step out
     type(deck_t), intent(in) :: deck    !! the deck
+    type(build_context_t), intent(inout) :: context !! takes the error
     integer, intent(in) :: i_card       !! *CONTROLS
     type(step_t) :: defaults
 
@@ -238,7 +241,14 @@ contains
       newton%max_stretch = parameter_real(card, "MAX STRETCH", newton%max_stretch)
       newton%prediction = parameter_choice(card, "PREDICTION", trim(merge("ON ", "OFF", &
                                            newton%prediction))) == "ON"
+      newton%linear_solver = method_of_name(parameter_choice(card, "LINEAR SOLVER", &
+                                                             method_name(newton%linear_solver)))
       newton%eigenvalues = newton%eigenvalues .or. has_parameter(card, "EIGENVALUES")
+      if (newton%linear_solver == method_mumps .and. .not. has_mumps &
+          .and. has_parameter(card, "LINEAR SOLVER")) then
+        call fault(context, deck, at_parameter(i_card, "LINEAR SOLVER"), &
+                   "this program was built without MUMPS: expected DIRECT or RECYCLED")
+      end if
     end associate
   end subroutine build_controls
 

@@ -1,0 +1,89 @@
+!> The linear system of a correction: how accurately it is solved, and by which method.
+module mpm_tangent_solution
+  use mpm_kinds, only: dp
+  use mpm_linear_method, only: chosen_method, method_recycled
+  use mpm_linear_solver, only: factorize, solve, solver_ok
+  use mpm_recycled_solver, only: accuracy_t, forget_factors, renew_factors, solve_recycled
+  use mpm_system, only: system_t
+  implicit none
+  private
+  public :: forcing_t, choose_accuracy, factorize_again, solve_tangent
+
+  real(dp), parameter :: first = 0.01_dp  !! relative residual asked of a first solution
+  real(dp), parameter :: largest = 0.1_dp !! of any solution
+  real(dp), parameter :: factor = 0.9_dp  !! on the square of the fall of the last correction
+  real(dp), parameter :: below = 0.01_dp  !! least one over the tolerance of Newton's method
+
+  !> What decides how accurately the next system is solved.
+  type :: forcing_t
+    logical  :: begun = .false.    !! there was a correction before
+    real(dp) :: norm = 0.0_dp      !! of Newton's residual before that correction [force]
+    type(accuracy_t) :: accuracy   !! asked of the next solution
+  end type forcing_t
+
+contains
+
+  !> Accuracy of the next solution by the second choice of Eisenstat and Walker: digits that the
+  !! correction is worth by the fall of the residual before. Source: theory.md (15g).
+  pure subroutine choose_accuracy(forcing, norm_rhs, norm, residual, tolerance)
+    type(forcing_t), intent(inout) :: forcing
+    real(dp), intent(in) :: norm_rhs  !! of the right-hand side [force]
+    real(dp), intent(in) :: norm      !! of Newton's residual [force]; 0: it says nothing here
+    real(dp), intent(in) :: residual  !! the same, relative [-]
+    real(dp), intent(in) :: tolerance !! that it must reach [-]
+    real(dp) :: eta, floor_of_goal
+
+    eta = first
+    if (forcing%begun) then
+      eta = factor
+      if (norm < forcing%norm) eta = factor*(norm/forcing%norm)**2
+    end if
+    forcing%begun = .true.
+    forcing%norm = norm
+    floor_of_goal = 0.0_dp
+    forcing%accuracy%ahead = 0.0_dp
+    if (norm > 0.0_dp .and. residual > 0.0_dp) then
+      floor_of_goal = below*tolerance*(norm/residual)
+      forcing%accuracy%ahead = max(0.0_dp, log10(residual/max(tolerance, epsilon(norm))))
+    end if
+    forcing%accuracy%goal = min(largest*norm_rhs, max(eta*norm_rhs, floor_of_goal))
+  end subroutine choose_accuracy
+
+  !> Solves for a correction. What it took is in system%recycler, also with the direct methods.
+  subroutine solve_tangent(x, system, rhs, accuracy, method, outcome)
+    real(dp), intent(out) :: x(:)            !! (n)  correction [length]
+    type(system_t), intent(inout) :: system  !! with tangent and analysis; gets new factors or not
+    real(dp), intent(in) :: rhs(:)           !! (n) [force]
+    type(accuracy_t), intent(in) :: accuracy !! of the recycling method
+    integer, intent(in)  :: method           !! method_* of the deck
+    integer, intent(out) :: outcome          !! solver_*
+    real(dp) :: clock(3)
+
+    associate (recycler => system%recycler)
+      if (chosen_method(method, system%dofs%n) == method_recycled .and. system%dofs%n > 0) then
+        call solve_recycled(recycler, x, system%solver, system%tangent, rhs, accuracy, outcome)
+        return
+      end if
+      call forget_factors(recycler)
+      call cpu_time(clock(1))
+      call factorize(system%solver, system%tangent, outcome)
+      call cpu_time(clock(2))
+      if (outcome == solver_ok) call solve(system%solver, system%tangent, rhs, x, outcome)
+      call cpu_time(clock(3))
+      recycler%is_new = .true.
+      recycler%n_iterations = 0
+      recycler%seconds = clock(2:3) - clock(1:2)
+    end associate
+  end subroutine solve_tangent
+
+  !> Makes factors of the tangent that was solved last, unless they are there.
+  subroutine factorize_again(system, outcome)
+    type(system_t), intent(inout) :: system !! with the tangent
+    integer, intent(out) :: outcome         !! solver_*
+
+    outcome = solver_ok
+    if (system%recycler%is_new .or. system%dofs%n == 0) return
+    call renew_factors(system%recycler, system%solver, system%tangent, outcome)
+  end subroutine factorize_again
+
+end module mpm_tangent_solution
