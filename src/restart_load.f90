@@ -12,6 +12,7 @@ module mpm_restart_load
   use mpm_model, only: model_t
   use mpm_model_signature, only: check_model
   use mpm_record_file, only: close_record, record_t
+  use mpm_recycled_solver, only: factor_memory_t, restore_factors
   use mpm_restart_file, only: open_restart, read_restart
   use mpm_restart_state, only: restart_t
   use mpm_run_state, only: run_state_t
@@ -115,6 +116,8 @@ contains
     analysis%system%u_last = state%delta_u
     analysis%u_start = analysis%kept%u_start
     analysis%watch = analysis%kept%watch
+    call restore_factors(analysis%system%recycler, analysis%kept%factors)
+    analysis%kept%factors = factor_memory_t() ! the system has them
     deallocate (analysis%kept%mesh_x)
     if (inverted > 0) call make_error(error, exit_file, "error: the restart file does not fit: "// &
                                       "mesh_x: expected elements that are not inside out")

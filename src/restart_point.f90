@@ -6,6 +6,7 @@ module mpm_restart_point
   use mpm_interruption, only: received_signal, signal_interrupt
   use mpm_material_points, only: hand_over
   use mpm_model, only: model_t
+  use mpm_recycled_solver, only: accept_factors, accepted_factors
   use mpm_restart_file, only: is_restart_due, write_restart
   use mpm_restart_output, only: note_output
   use mpm_restart_state, only: restart_t
@@ -29,6 +30,7 @@ contains
     analysis%kept%state = state
     analysis%kept%u_start = analysis%u_start
     analysis%kept%watch = analysis%watch
+    call accept_factors(analysis%system%recycler)
     call note_output(analysis%kept, output)
   end subroutine keep_point
 
@@ -44,6 +46,7 @@ contains
     restart%mesh_x = analysis%body%mesh%x
     call hand_over(analysis%body%points, restart%points)
     restart%surface = analysis%body%surface
+    restart%factors = accepted_factors(analysis%system%recycler)
     call write_restart(restart, model, output%paths%restart, output%paths%previous_restart, error)
     call hand_over(restart%points, analysis%body%points)
     if (allocated(error)) return

@@ -128,6 +128,13 @@ RF, U
 """
 
 
+def recycled(deck):
+    """The deck with factors of the linear solver that outlive an increment."""
+    first, rest = deck.split("*STEP", 1)
+    line, rest = rest.split("\n", 1)
+    return f"{first}*STEP{line}\n*CONTROLS, LINEAR SOLVER=RECYCLED\n{rest}"
+
+
 def without_time(path):
     """All lines of a history or status file but those that name program and revision."""
     lines = path.read_text(encoding="utf-8").splitlines()

@@ -11,7 +11,7 @@ import zlib
 import h5py
 import pytest
 from conftest import ROOT
-from restart_runs import CUBE, PLATE, STRIP, assert_same_run, datasets
+from restart_runs import CUBE, PLATE, STRIP, assert_same_run, datasets, recycled
 
 STRETCH = (ROOT / "input" / "stretch" / "stretch.inp").read_text(encoding="utf-8")
 GO_ON = "job.restart.h5"
@@ -19,8 +19,16 @@ GO_ON = "job.restart.h5"
 
 @pytest.mark.parametrize(
     ("deck", "at_least"),
-    [(PLATE, 12), (CUBE, 5), (STRETCH, 16), (STRIP, 4)],
-    ids=["plate", "cube", "stretch", "strip"],
+    [
+        (PLATE, 12),
+        (CUBE, 5),
+        (STRETCH, 16),
+        (STRIP, 4),
+        (recycled(PLATE), 12),
+        (recycled(CUBE), 5),
+        (recycled(STRIP), 4),
+    ],
+    ids=["plate", "cube", "stretch", "strip", "plate-recycled", "cube-recycled", "strip-recycled"],
 )
 def test_every_increment_can_be_gone_on_from(run_tessera, tmp_path, deck, at_least):
     """The run is stopped after each increment; every second part has two threads."""
@@ -59,6 +67,22 @@ def test_strip_begins_with_the_last_increment(run_tessera):
     run = run_tessera(STRIP)
     assert run.code == 0
     assert run.read("job.log").count("started from the last increment") > 3
+
+
+def test_recycled_factors_outlive_increments(run_tessera, tmp_path):
+    """The decks of the test above do what they are there for: increments without new factors."""
+    for deck in (PLATE, STRIP):
+        run = run_tessera(recycled(deck), "-f")
+        assert run.code == 0
+        table = datasets(tmp_path / "job.vtkhdf")
+        increments = {}
+        for i, attempt in enumerate(table["tessera/iterations/attempt"]):
+            place = (table["tessera/iterations/step"][i], table["tessera/iterations/increment"][i])
+            increments.setdefault((*place, attempt), []).append(
+                (table["tessera/iterations/gmres"][i], table["tessera/iterations/new_factors"][i])
+            )
+        assert any(sum(new for _, new in rows) == 0 for rows in increments.values())
+        assert any(gmres > 0 for rows in increments.values() for gmres, _ in rows)
 
 
 def test_cube_loses_points_on_its_way(run_tessera, tmp_path):

@@ -6,8 +6,8 @@ module mpm_restart_file
   use mpm_model, only: model_t, restart_by_clock
   use mpm_record_file, only: close_record, create_record, open_record, record_t, seal_record
   use mpm_record_values, only: exchange_integer, exchange_reals, exchange_text, refuse_value
-  use mpm_restart_state, only: exchange_body, exchange_run_state, exchange_schedule, &
-                               exchange_starts, exchange_watch, restart_t
+  use mpm_restart_state, only: exchange_body, exchange_factors, exchange_run_state, &
+                               exchange_schedule, exchange_starts, exchange_watch, restart_t
   use mpm_run_state, only: make_run_state
   implicit none
   private
@@ -113,6 +113,7 @@ contains
 
     call exchange_run_state(record, restart%state, error)
     call exchange_watch(record, restart%watch, error)
+    call exchange_factors(record, restart%factors, error)
     call exchange_starts(record, model, restart%schedule%step, error)
     call exchange_body(record, restart, model%mesh%n_el, error)
     call exchange_text(record, "output_mark", restart%output_mark, error)

@@ -3,19 +3,22 @@
 module mpm_restart_state
   use mpm_error, only: error_t
   use mpm_increments, only: schedule_t
-  use mpm_kinds, only: dp
+  use mpm_kinds, only: dp, ip
   use mpm_limit_load, only: limit_watch_t
   use mpm_material_points, only: points_t, status_inside, status_removed
   use mpm_model, only: model_t
   use mpm_record_file, only: record_t
   use mpm_record_values, only: exchange_integer, exchange_integers, exchange_logical, &
-                               exchange_real, exchange_reals, refuse_value
+                               exchange_real, exchange_reals, exchange_text, &
+                               refuse_value
+  use mpm_recycled_solver, only: factor_memory_t
   use mpm_run_state, only: run_state_t
   use mpm_surface_points, only: surface_points_t
   implicit none
   private
   public :: restart_t
-  public :: exchange_body, exchange_run_state, exchange_schedule, exchange_starts, exchange_watch
+  public :: exchange_body, exchange_factors, exchange_run_state, exchange_schedule
+  public :: exchange_starts, exchange_watch
 
   !> A run after an accepted increment.
   type :: restart_t
@@ -25,6 +28,7 @@ module mpm_restart_state
     real(dp), allocatable :: u_start(:, :)     !! (n_dim, n)  displacements of the points at the
                                                !!             start of the step [length]
     type(limit_watch_t) :: watch               !! of the loads
+    type(factor_memory_t) :: factors           !! that the linear solver has kept
     type(points_t) :: points                   !! converged
     type(surface_points_t) :: surface          !! of the loads with CARRIER=POINTS
     character(:), allocatable :: written_by    !! version and revision of the program
@@ -73,6 +77,34 @@ contains
     call exchange_real(record, "watch_load", watch%load, error)
     call exchange_logical(record, "watch_told", watch%told, error)
   end subroutine exchange_watch
+
+  !> Factors that the linear solver keeps: the matrix from which they are made again.
+  subroutine exchange_factors(record, factors, error)
+    type(record_t), intent(in) :: record               !! open
+    type(factor_memory_t), intent(inout) :: factors    !! written, or read
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+    character(:), allocatable :: pattern
+
+    call exchange_logical(record, "factors_are_there", factors%is_there, error)
+    if (allocated(error) .or. .not. factors%is_there) return
+    pattern = factors%pattern
+    call exchange_text(record, "factors_pattern", pattern, error)
+    call exchange_integer(record, "factors_n", factors%n, error)
+    call exchange_integer(record, "factors_nnz", factors%nnz, error)
+    call exchange_real(record, "factors_work", factors%work, error)
+    call exchange_real(record, "factors_digits", factors%digits, error)
+    call exchange_real(record, "factors_rate", factors%rate, error)
+    if (allocated(error)) return
+    if (.not. record%writing) then
+      factors%pattern = pattern
+      if (factors%n < 1 .or. factors%nnz < 1 .or. 8_ip*factors%nnz > record%n_bytes) then
+        call refuse_value(record, "factors_nnz", "the size of a matrix", error)
+        return
+      end if
+      allocate (factors%val(factors%nnz), source=0.0_dp)
+    end if
+    call exchange_reals(record, "factors_val", [factors%nnz], factors%val, error)
+  end subroutine exchange_factors
 
   !> What the writers are told. The arrays have the sizes of the model.
   subroutine exchange_run_state(record, state, error)
