@@ -19,7 +19,6 @@ module mpm_run_tables
   character(13), parameter :: iteration_columns(12) = [character(13) :: "step", "increment", &
     "attempt", "iteration", "residual", "kinematics", "stress", "assembly", "factorisation", &
     "solve", "gmres", "new_factors"]
-  integer, parameter :: n_iteration_integers = 4 !! leading columns of integers
   integer, parameter :: column_of_gmres = 11
   character(13), parameter :: ledger_columns(20) = [character(13) :: "step", "increment", "time", &
     "count", "mass", "volume", "lost", "extrapolated", "centre", "checkerboard", "ghost_share", &
