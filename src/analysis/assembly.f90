@@ -17,24 +17,33 @@ module mpm_assembly
 
 contains
 
-  !> Internal nodal forces. Source: theory.md (11).
-  pure subroutine internal_force(f_int, mesh, kinematics, sums, element)
+  !> Internal nodal forces. Elements are taken at the same time, their forces added in their order:
+  !! the result does not depend on the number of threads. Source: theory.md (11).
+  subroutine internal_force(f_int, mesh, kinematics, sums, element)
     real(dp), intent(out)            :: f_int(:, :) !! (n_dim, n_node)  [force]
     type(mesh_t), intent(in)         :: mesh
     type(kinematics_t), intent(in)   :: kinematics
     type(element_sums_t), intent(in) :: sums
     integer, intent(in)              :: element(:)  !! active elements
+    real(dp), allocatable :: force(:, :, :)
     real(dp) :: stress(3, 3)
     integer :: i, e, a, n_dim
 
     n_dim = mesh%n_dim
-    f_int = 0.0_dp
+    allocate (force(n_dim, n_dim + 1, size(element)))
+    !$omp parallel do default(shared) private(e, stress)
     do i = 1, size(element)
       e = element(i)
       stress = tensor_from_voigt(sums%stress(:, e))
+      force(:, :, i) = matmul(stress(1:n_dim, 1:n_dim), kinematics%grad_shape(:, :, e))
+    end do
+    !$omp end parallel do
+    f_int = 0.0_dp
+    do i = 1, size(element)
       do a = 1, n_dim + 1
-        f_int(:, mesh%node(a, e)) = f_int(:, mesh%node(a, e)) &
-          + matmul(stress(1:n_dim, 1:n_dim), kinematics%grad_shape(:, a, e))
+        associate (node => mesh%node(a, element(i)))
+          f_int(:, node) = f_int(:, node) + force(:, a, i)
+        end associate
       end do
     end do
   end subroutine internal_force

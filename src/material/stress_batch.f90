@@ -36,7 +36,8 @@ module mpm_stress_batch
     logical  :: flows(batch_size) = .false.          !! out: plastic flow in this update
     logical  :: failed(batch_size) = .false.         !! out: trial b_e not positive definite or no
                                                      !! number; the other results mean nothing
-    integer  :: material(batch_size) = 0             !! index of the material, for hardening tables
+    integer  :: material(batch_size) = 0             !! index of the material, one number for one
+                                                     !! material in all uses of a batch
   end type stress_batch_t
 
   !> What is known in principal axes.
@@ -52,16 +53,18 @@ module mpm_stress_batch
 
 contains
 
-  !> Constants of a material at one place of a batch.
+  !> Constants of a material at one place of a batch; moduli only when it is another than before.
   pure subroutine set_material(batch, place, index, material)
     type(stress_batch_t), intent(inout) :: batch !! plastic_strain is set there
     integer, intent(in) :: place                 !! 1..batch_size
     integer, intent(in) :: index                 !! of the material
     type(material_t), intent(in) :: material
 
-    batch%material(place) = index
-    batch%bulk(place) = bulk_modulus(material)
-    batch%shear(place) = shear_modulus(material)
+    if (batch%material(place) /= index) then ! mostly the point before was of the same
+      batch%material(place) = index
+      batch%bulk(place) = bulk_modulus(material)
+      batch%shear(place) = shear_modulus(material)
+    end if
     if (material%law == law_von_mises) then
       call yield_stress_at(material, batch%plastic_strain(place), batch%strength(place), &
                            batch%slope(place), batch%segment_end(place))
