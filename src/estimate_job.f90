@@ -13,6 +13,7 @@ module mpm_estimate_job
   use mpm_run_state, only: run_state_t
   use mpm_solve_job, only: make_body, prepare_increment, stop_times
   use mpm_system, only: body_t, evaluate, evaluation_ok, free_system, open_system, system_t
+  use omp_lib, only: omp_get_max_threads, omp_set_num_threads
   implicit none
   private
   public :: estimate_job
@@ -66,14 +67,17 @@ contains
     estimate%memory = memory_of_run(system, model)
   end subroutine note_sizes
 
-  !> Times one evaluation with its tangent, and dense products.
+  !> Times one evaluation with its tangent, and dense products, on one thread: threads that wait for
+  !! each other count as busy.
   subroutine note_seconds(estimate, system, body)
     type(run_estimate_t), intent(inout) :: estimate
     type(system_t), intent(inout) :: system !! analysed; its trial state is overwritten
     type(body_t), intent(in) :: body
     real(dp) :: clock(3), rate
-    integer  :: outcome
+    integer  :: n_threads, outcome
 
+    n_threads = omp_get_max_threads()
+    call omp_set_num_threads(1)
     system%u = sheared(body)
     call evaluate(system, body, outcome) ! memory is touched for the first time
     if (outcome /= evaluation_ok) system%u = 0.0_dp
@@ -85,6 +89,7 @@ contains
                             system%kinematics, system%sums)
     end if
     call cpu_time(clock(3))
+    call omp_set_num_threads(n_threads)
     estimate%point_seconds = evaluations*(clock(2) - clock(1)) + clock(3) - clock(2)
     call measure_flop_rate(rate)
     estimate%factor_seconds = factor_seconds(estimate%memory%factors%flops, rate)
