@@ -1,5 +1,5 @@
-!> Copies rows of a dataset to one of the same layout in another file as they are stored, without
-!! unpacking them. A chunk holds all columns of its rows.
+!> Chunks of a dataset as they are stored. Rows are copied to a dataset of the same layout in
+!! another file without unpacking them. A chunk holds all columns of its rows.
 ! allow(assumed-size)
 module mpm_hdf5_copy
   use, intrinsic :: iso_c_binding, only: c_int, c_int32_t, c_int64_t, c_size_t
@@ -9,7 +9,7 @@ module mpm_hdf5_copy
   use mpm_kinds, only: ip
   implicit none
   private
-  public :: copy_rows, dataset_rows, dataset_shape
+  public :: copy_rows, dataset_rows, dataset_shape, put_chunk
 
   integer(c_int64_t), parameter :: default_transfer = 0_c_int64_t !! H5P_DEFAULT
 
@@ -33,7 +33,7 @@ module mpm_hdf5_copy
       integer(c_int64_t), value :: dataset, transfer
       integer(c_int64_t), intent(in)   :: offset(*)
       integer(c_int32_t), intent(out)  :: filters
-      integer(c_int64_t), intent(inout) :: bytes(*)
+      integer(c_int32_t), intent(inout) :: bytes(*)
       integer(c_int) :: status
     end function h5_read_chunk
 
@@ -46,7 +46,7 @@ module mpm_hdf5_copy
       integer(c_int32_t), value :: filters
       integer(c_int64_t), intent(in) :: offset(*)
       integer(c_size_t), value :: n_bytes
-      integer(c_int64_t), intent(in) :: bytes(*)
+      integer(c_int32_t), intent(in) :: bytes(*)
       integer(c_int) :: status
     end function h5_write_chunk
   end interface
@@ -100,7 +100,7 @@ contains
     integer(hid_t), intent(in) :: to     !! open
     integer(ip), intent(in)    :: first  !! number of the row, from 0
     integer, intent(out)       :: status !! < 0: failed
-    integer(c_int64_t), allocatable :: bytes(:)
+    integer(c_int32_t), allocatable :: bytes(:)
     integer(c_int64_t) :: n_bytes, offset(2)
     integer(c_int32_t) :: filters
     character(80) :: reason
@@ -109,7 +109,7 @@ contains
     offset = [int(first, c_int64_t), 0_c_int64_t] ! in the order of C
     status = int(h5_chunk_size(from, offset, n_bytes))
     if (status < 0 .or. n_bytes == 0_c_int64_t) return
-    allocate (bytes((n_bytes + 7_c_int64_t)/8_c_int64_t), stat=problem, errmsg=reason)
+    allocate (bytes((n_bytes + 3_c_int64_t)/4_c_int64_t), stat=problem, errmsg=reason)
     if (problem /= 0) then
       status = -1
       return
@@ -119,6 +119,21 @@ contains
     status = int(h5_write_chunk(to, default_transfer, filters, offset, int(n_bytes, c_size_t), &
                                 bytes))
   end subroutine copy_chunk
+
+  !> Stores a chunk that has been through all filters.
+  subroutine put_chunk(dataset, first, bytes, n_bytes, status)
+    integer(hid_t), intent(in) :: dataset       !! open, its extent covers the chunk
+    integer(ip), intent(in)    :: first         !! number of its first row, from 0
+    integer(c_int32_t), intent(in) :: bytes(:)  !! as they are to be stored
+    integer(ip), intent(in)    :: n_bytes       !! that count
+    integer, intent(out)       :: status        !! < 0: failed
+    integer(c_int32_t), parameter :: all_filters = 0_c_int32_t
+    integer(c_int64_t) :: offset(2)
+
+    offset = [int(first, c_int64_t), 0_c_int64_t] ! in the order of C
+    status = int(h5_write_chunk(dataset, default_transfer, all_filters, offset, &
+                                int(n_bytes, c_size_t), bytes))
+  end subroutine put_chunk
 
   !> Extents of a dataset, in the order of Fortran: rows are last.
   subroutine dataset_shape(dataset, rank, extent, status)

@@ -3,7 +3,7 @@
 !! They are open as long as their file. Every procedure returns at once when `error` is set already.
 ! allow(assumed-size)
 module mpm_hdf5_series
-  use, intrinsic :: iso_c_binding, only: c_loc
+  use, intrinsic :: iso_c_binding, only: c_f_pointer, c_int32_t, c_int64_t, c_loc, c_ptr
   use hdf5, only: h5dcreate_f, h5dget_space_f, h5dset_extent_f, h5dwrite_f, &
                   h5kind_to_type, h5p_dataset_create_f, h5pclose_f, h5pcreate_f, h5pset_chunk_f, &
                   h5pset_deflate_f, h5pset_shuffle_f, h5s_select_set_f, h5s_unlimited_f, &
@@ -11,9 +11,11 @@ module mpm_hdf5_series
                   h5t_std_i32le, h5t_std_i64le, h5t_std_u8le, h5_integer_kind, h5_real_kind, &
                   hid_t, hsize_t
   use mpm_error, only: error_t
+  use mpm_hdf5_copy, only: put_chunk
   use mpm_hdf5_file, only: add_dataset, check_writable, fail_hdf5_file, hdf5_file_t, &
                            note_rows, open_dataset
   use mpm_kinds, only: dp, ip
+  use mpm_row_packing, only: pack_rows
   implicit none
   private
   public :: series_layout_t, series_t, append_rows, create_series, row_count
@@ -140,15 +142,22 @@ contains
     integer, intent(in) :: n_rows                      !! rows in values
     real(dp), intent(in), target :: values(*)          !! row by row
     type(error_t), allocatable, intent(inout) :: error !! exit_file
+    integer(c_int32_t), allocatable :: packed(:)
     integer(hid_t) :: id, memory, space
+    integer(ip) :: n_bytes
     integer :: status
 
     call check_writable(file, error)
     if (allocated(error)) return
+    call pack_chunk(packed, n_bytes, series, file, n_rows, c_loc(values))
     call grow(series, file, n_rows, id, memory, space, status)
     if (status >= 0) then
-      call h5dwrite_f(id, h5kind_to_type(dp, h5_real_kind), c_loc(values), status, &
-                      memory, space)
+      if (n_bytes > 0_ip) then
+        call put_chunk(id, row_count(series, file) - n_rows, packed, n_bytes, status)
+      else
+        call h5dwrite_f(id, h5kind_to_type(dp, h5_real_kind), c_loc(values), status, &
+                        memory, space)
+      end if
     end if
     if (status < 0) then
       call fail_hdf5_file(file, "write", error)
@@ -157,6 +166,23 @@ contains
     call h5sclose_f(memory, status)
     call h5sclose_f(space, status)
   end subroutine write_reals
+
+  !> Packs rows that fill a new chunk and repeat: HDF5 takes several times as long.
+  subroutine pack_chunk(packed, n_bytes, series, file, n_rows, values)
+    integer(c_int32_t), allocatable, intent(out) :: packed(:) !! the chunk as it is stored
+    integer(ip), intent(out) :: n_bytes     !! of it, 0: to be left to HDF5
+    type(series_t), intent(in) :: series    !! dataset
+    type(hdf5_file_t), intent(in) :: file   !! that holds it
+    integer, intent(in) :: n_rows           !! new rows
+    type(c_ptr), intent(in) :: values       !! of the new rows, row by row
+    integer(c_int64_t), pointer :: row(:, :)
+
+    n_bytes = 0_ip
+    if (.not. series%layout%compressed .or. n_rows /= series%layout%chunk_rows) return
+    if (mod(row_count(series, file), int(n_rows, ip)) /= 0_ip) return
+    call c_f_pointer(values, row, [max(1, series%layout%n_columns), n_rows])
+    call pack_rows(packed, n_bytes, row)
+  end subroutine pack_chunk
 
   !> Makes room for rows and selects them.
   subroutine grow(series, file, n_rows, id, memory, space, status)

@@ -163,6 +163,12 @@ contains
       values(1, :) = real(points%element(items), dp)
     case ("MAT")
       values(1, :) = real(points%material(items), dp)
+    case ("PATCH")
+      do i = 1, size(items)
+        values(1, i) = 0.0_dp
+        if (points%element(items(i)) == 0) cycle
+        values(1, i) = real(patches%of_element(points%element(items(i))), dp)
+      end do
     case ("ID")
       values(1, :) = real(points%id(items), dp)
     case default
