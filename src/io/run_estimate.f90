@@ -9,6 +9,7 @@ module mpm_run_estimate
   public :: estimate_text, expected_peak, memory_text, peak_bound, short_text, size_text
 
   character(*), parameter :: line_end = new_line("a")
+  real(dp), parameter :: stored_share = 0.4_dp !! of the fields once compressed: 0.2 to 0.8
 
   !> Memory of a run by what it is for [bytes].
   type :: memory_need_t
@@ -133,13 +134,14 @@ contains
 
     if (estimate%n_increments == 0) then
       text = row("increments", "as many as the run needs")// &
-             row("results on disk", "at most "//size_text(estimate%once_bytes)//" and "// &
-                 size_text(estimate%output_bytes)//" for each output of fields")
+             row("results on disk", "about "//size_text(stored_share*estimate%output_bytes)// &
+                 " for each output of fields, at most "//size_text(estimate%output_bytes))
     else
       n_bytes = estimate%once_bytes + real(estimate%n_outputs, dp)*estimate%output_bytes
       text = row("increments", integer_text(estimate%n_increments)//" if none is cut")// &
              row("outputs of fields", integer_text(estimate%n_outputs))// &
-             row("results on disk", "at most "//size_text(n_bytes)// &
+             row("results on disk", "about "//size_text(stored_share*n_bytes)//", at most "// &
+                 size_text(n_bytes)// &
                  ", twice that while the run writes")
     end if
   end function results_text
