@@ -40,6 +40,9 @@ install_debian_packages() {
     return
   fi
   missing=""
+  case $(dpkg --print-architecture) in
+    amd64 | arm64) packages="$packages libisal-dev" ;; # not there for others, and not needed
+  esac
   for package in $packages; do
     is_installed "$package" || missing="$missing $package"
   done

@@ -3,19 +3,19 @@
 !! They are open as long as their file. Every procedure returns at once when `error` is set already.
 ! allow(assumed-size)
 module mpm_hdf5_series
-  use, intrinsic :: iso_c_binding, only: c_f_pointer, c_int32_t, c_int64_t, c_loc, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_int32_t, c_loc
   use hdf5, only: h5dcreate_f, h5dget_space_f, h5dset_extent_f, h5dwrite_f, &
                   h5kind_to_type, h5p_dataset_create_f, h5pclose_f, h5pcreate_f, h5pset_chunk_f, &
                   h5pset_deflate_f, h5pset_shuffle_f, h5s_select_set_f, h5s_unlimited_f, &
                   h5sclose_f, h5screate_simple_f, h5sselect_hyperslab_f, h5t_ieee_f64le, &
                   h5t_std_i32le, h5t_std_i64le, h5t_std_u8le, h5_integer_kind, h5_real_kind, &
                   hid_t, hsize_t
+  use mpm_chunk_packing, only: pack_chunk
   use mpm_error, only: error_t
   use mpm_hdf5_copy, only: put_chunk
   use mpm_hdf5_file, only: add_dataset, check_writable, fail_hdf5_file, hdf5_file_t, &
                            note_rows, open_dataset
   use mpm_kinds, only: dp, ip
-  use mpm_row_packing, only: pack_rows
   implicit none
   private
   public :: series_layout_t, series_t, append_rows, create_series, row_count
@@ -115,17 +115,29 @@ contains
     integer(ip), intent(in) :: values(:)               !! (n_rows)
     type(error_t), allocatable, intent(inout) :: error !! exit_file
     integer(ip), allocatable, target :: buffer(:)
+    integer(c_int32_t), allocatable, target :: short(:)
+    integer(c_int32_t), allocatable :: packed(:)
     integer(hid_t) :: id, memory, space
+    integer(ip) :: n_bytes
     integer :: status
 
     call check_writable(file, error)
     if (allocated(error)) return
     allocate (buffer(size(values)))
     buffer(:) = values
+    n_bytes = 0_ip
+    if (series%layout%kind == kind_int32 .and. fills_chunk(series, file, size(values))) then
+      short = int(values, c_int32_t)
+      call pack_chunk(packed, n_bytes, c_loc(short), size(short), 4)
+    end if
     call grow(series, file, size(values), id, memory, space, status)
     if (status >= 0) then
-      call h5dwrite_f(id, h5kind_to_type(ip, h5_integer_kind), c_loc(buffer), status, &
-                      memory, space)
+      if (n_bytes > 0_ip) then
+        call put_chunk(id, row_count(series, file) - size(values, kind=ip), packed, n_bytes, status)
+      else
+        call h5dwrite_f(id, h5kind_to_type(ip, h5_integer_kind), c_loc(buffer), status, &
+                        memory, space)
+      end if
     end if
     if (status < 0) then
       call fail_hdf5_file(file, "write", error)
@@ -149,7 +161,10 @@ contains
 
     call check_writable(file, error)
     if (allocated(error)) return
-    call pack_chunk(packed, n_bytes, series, file, n_rows, c_loc(values))
+    n_bytes = 0_ip
+    if (fills_chunk(series, file, n_rows)) then
+      call pack_chunk(packed, n_bytes, c_loc(values), n_rows*max(1, series%layout%n_columns), 8)
+    end if
     call grow(series, file, n_rows, id, memory, space, status)
     if (status >= 0) then
       if (n_bytes > 0_ip) then
@@ -167,22 +182,15 @@ contains
     call h5sclose_f(space, status)
   end subroutine write_reals
 
-  !> Packs rows that fill a new chunk and repeat: HDF5 takes several times as long.
-  subroutine pack_chunk(packed, n_bytes, series, file, n_rows, values)
-    integer(c_int32_t), allocatable, intent(out) :: packed(:) !! the chunk as it is stored
-    integer(ip), intent(out) :: n_bytes     !! of it, 0: to be left to HDF5
-    type(series_t), intent(in) :: series    !! dataset
-    type(hdf5_file_t), intent(in) :: file   !! that holds it
-    integer, intent(in) :: n_rows           !! new rows
-    type(c_ptr), intent(in) :: values       !! of the new rows, row by row
-    integer(c_int64_t), pointer :: row(:, :)
+  !> Whether rows fill a new chunk that is stored packed.
+  pure logical function fills_chunk(series, file, n_rows)
+    type(series_t), intent(in) :: series  !! dataset
+    type(hdf5_file_t), intent(in) :: file !! that holds it
+    integer, intent(in) :: n_rows         !! new rows
 
-    n_bytes = 0_ip
-    if (.not. series%layout%compressed .or. n_rows /= series%layout%chunk_rows) return
-    if (mod(row_count(series, file), int(n_rows, ip)) /= 0_ip) return
-    call c_f_pointer(values, row, [max(1, series%layout%n_columns), n_rows])
-    call pack_rows(packed, n_bytes, row)
-  end subroutine pack_chunk
+    fills_chunk = series%layout%compressed .and. n_rows == series%layout%chunk_rows &
+                  .and. mod(row_count(series, file), int(max(1, n_rows), ip)) == 0_ip
+  end function fills_chunk
 
   !> Makes room for rows and selects them.
   subroutine grow(series, file, n_rows, id, memory, space, status)
