@@ -232,8 +232,10 @@ def location(found: dict) -> Table:
 def page_text(found: dict, cases: Sequence[Case], limits: Sequence[Limit]) -> str:
     """The whole page; the same figures give the same text."""
     text = HEAD.read_text(encoding="utf-8")
-    text += f"\nProcessor: {found['processor']}. Medians of {found['runs']} runs"
-    fewer = [name for name, entry in found["cases"].items() if entry["n_runs"] < found["runs"]]
+    n_runs = found["runs"]
+    text += f"\nProcessor: {found['processor']}. "
+    text += "One run of each case" if n_runs == 1 else f"Medians of {n_runs} runs"
+    fewer = [name for name, entry in found["cases"].items() if entry["n_runs"] < n_runs]
     text += f" (fewer of {', '.join(fewer)}: see *Sizes*).\n" if fewer else ".\n"
     rows = [(row.what, figure(row), row.relation, verdict_cell(row)) for row in limits]
     text += "\n## Limits\n\n" + markdown_table(("", "found", "limit", ""), rows)

@@ -149,5 +149,5 @@ def draw_roofline(axes: Axes, found: dict, _: Sequence[Case]) -> bool:
     logarithmic(axes, "operations per byte", "GFLOP/s")
     axes.set_xlim(0.1, 100.0)
     axes.set_ylim(0.5, 2.0 * peak)
-    axes.legend(loc="lower right")
+    axes.legend(loc="upper left")
     return True
