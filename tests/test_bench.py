@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 import pytest
-from benching import cases, page
+from benching import cases, page, post
 from benching.__main__ import main
 from benching.cases import CASES, DEFAULT, BenchError, Case, write_deck
 from benching.judging import Limit, limits_of
@@ -334,6 +334,16 @@ def test_what_was_not_run_is_not_judged(found):
     found |= {"cases": {}, "kernel": {}, "location": [], "solvers": [DEFAULT]}
     assert set(verdicts(found).values()) == {"not measured"}
     assert Limit("some", math.nan, 1.0).verdict == "FAILED"
+
+
+def test_time_and_memory_of_pictures_are_judged(tmp_path, monkeypatch, capsys):
+    measured = {"picture": (1.0, 100.0), "report": (59.0, 100.0)}
+    monkeypatch.setattr(post, "make_results", lambda *arguments: tmp_path / "job")
+    monkeypatch.setattr(post, "measure", lambda command, job: measured[command])
+    assert post.bench_post(3, tmp_path / "bin" / "program", ROOT, {}) is True
+    measured["picture"] = (1.0, 3000.0)
+    assert post.bench_post(3, tmp_path / "bin" / "program", ROOT, {}) is False
+    assert "3000   <= 5 s after import and 2048 MiB: FAILED" in capsys.readouterr().out
 
 
 # --- the page and the program --------------------------------------------------------------------
