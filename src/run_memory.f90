@@ -104,7 +104,7 @@ contains
     associate (map => system%map, tangent => system%tangent)
       need%pattern = 16.0_dp*real(tangent%nnz, dp) + 8.0_dp*real(tangent%n, dp)
       if (allocated(map%position)) then
-        need%pattern = need%pattern + real(8*size(map%position, kind=ip), dp) &
+        need%pattern = need%pattern + real(4*size(map%position, kind=ip), dp) &
                        + real(4*size(map%node), dp) + real(4*size(map%element_local), dp)
       end if
       need%factors = factor_estimate(system%solver, real(tangent%nnz, dp))

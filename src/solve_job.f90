@@ -15,6 +15,7 @@ module mpm_solve_job
   use mpm_limit_note, only: note_limit_load
   use mpm_linear_solver, only: solver_memory, solver_ok
   use mpm_material_points, only: hand_over, points_t, sort_points
+  use mpm_memory, only: give_back_memory
   use mpm_mesh_layout, only: lay_out_mesh
   use mpm_model, only: formulation_fbar, formulation_standard, model_t
   use mpm_model_signature, only: model_signature
@@ -303,6 +304,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(time_increment_t) :: increment
     integer :: outcome
+    logical :: gives_back
 
     increment = time_increment_t(schedule%step_time, schedule%size, schedule%settings%period)
     associate (step => model%step(schedule%step))
@@ -324,6 +326,7 @@ contains
       call memory_error(error, system, "pattern")
       return
     end if
+    gives_back = give_back_memory() ! factors need most of all
     call prepare_factors(system%recycler, system%solver, system%tangent, outcome)
     if (outcome == solver_memory) then
       call memory_error(error, system, "analysis")

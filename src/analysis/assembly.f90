@@ -80,14 +80,14 @@ contains
     type(assembly_map_t), intent(in) :: map
     integer, intent(in)     :: number            !! of the block in the map
     real(dp), intent(in)    :: block(:, :)       !! (n_eq, n_eq)
-    integer(ip) :: k, position
-    integer :: i, j
+    integer(ip) :: k
+    integer :: i, j, position
 
     k = map%position_first(number)
     do j = 1, size(block, 2)
       do i = 1, size(block, 1)
         position = map%position(k)
-        if (position >= 0_ip) val(position) = val(position) + block(i, j)
+        if (position >= 0) val(position) = val(position) + block(i, j)
         k = k + 1_ip
       end do
     end do

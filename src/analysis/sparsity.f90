@@ -31,7 +31,7 @@ module mpm_sparsity
                                                   !! within its patch, 0 if inactive
     integer(ip), allocatable :: position_first(:) !! (n_block+1)  block P is position(
                                                   !! position_first(P):position_first(P+1)-1)
-    integer(ip), allocatable :: position(:)       !! place in val of each block entry, column by
+    integer, allocatable :: position(:)           !! place in val of each block entry, column by
                                                   !! column; -1 = leave out
     integer, allocatable :: color_first(:)        !! (n_color+1)  patches of colour c are
                                                   !! color_patch(color_first(c):color_first(c+1)-1)
@@ -284,6 +284,7 @@ contains
     character(80) :: reason
     integer :: b, k, block, status
 
+    if (matrix%nnz > int(huge(1), ip)) return ! such a tangent has no room anywhere
     allocate (map%position(map%position_first(map%n_block + 1) - 1_ip), stat=status, errmsg=reason)
     if (status /= 0) return
     allocate (offset(size(dofs%id, 1), size(dofs%id, 2)), source=-1)
@@ -320,7 +321,7 @@ contains
 
   !> Writes the columns of one node in one block.
   pure subroutine place_node_columns(position, nodes, node, offset, equations, matrix)
-    integer(ip), intent(inout) :: position(:)  !! ((n_dim*n_nodes)**2)  block by columns
+    integer, intent(inout) :: position(:)      !! ((n_dim*n_nodes)**2)  block by columns
     integer, intent(in) :: nodes(:)            !! nodes of the block
     integer, intent(in) :: node                !! node whose columns are written, one of them
     integer, intent(in) :: offset(:, :)        !! (n_dim, n_node)  place of a row in the columns
@@ -337,9 +338,9 @@ contains
       do a = 1, size(nodes)
         do i = 1, n_dim
           k = k + 1
-          position(k) = -1_ip
+          position(k) = -1
           if (equations(j) == 0 .or. offset(i, nodes(a)) < 0) cycle
-          position(k) = matrix%col_ptr(equations(j) - 1) + int(offset(i, nodes(a)), ip)
+          position(k) = int(matrix%col_ptr(equations(j) - 1)) + offset(i, nodes(a))
         end do
       end do
     end do

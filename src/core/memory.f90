@@ -5,7 +5,7 @@ module mpm_memory
   use mpm_kinds, only: dp, ip
   implicit none
   private
-  public :: has_room, keep_freed_memory, megabytes
+  public :: give_back_memory, has_room, keep_freed_memory, megabytes
 
   ! Numbers of malloc.h.
   integer(c_int), parameter :: trim_threshold = -1_c_int !! M_TRIM_THRESHOLD
@@ -29,6 +29,14 @@ module mpm_memory
       implicit none
       type(c_ptr), value :: block
     end subroutine c_free
+
+    !> Gives free pages back to the system; 1 if there were some.
+    function c_malloc_trim(pad) bind(c, name="malloc_trim") result(released)
+      import :: c_int, c_size_t
+      implicit none
+      integer(c_size_t), value :: pad
+      integer(c_int) :: released
+    end function c_malloc_trim
 
     !> Changes how the C library manages memory; 0 if it does not know how.
     function c_mallopt(parameter, value) bind(c, name="mallopt") result(done)
@@ -61,6 +69,14 @@ contains
     room = c_associated(block)
     if (room) call c_free(block)
   end function has_room
+
+  !> Gives free memory that was kept back to the system, before much is needed at once.
+  !! .false.: there was none.
+  function give_back_memory() result(released)
+    logical :: released
+
+    released = c_malloc_trim(0_c_size_t) /= 0_c_int
+  end function give_back_memory
 
   !> Bytes in whole megabytes, at least one.
   pure real(dp) function megabytes(n_bytes) result(amount)
