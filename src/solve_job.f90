@@ -66,7 +66,7 @@ contains
         call start_where_nodes_stand(model%step(i)%constraint, model%frames, state%node_u)
         call begin_step(analysis%schedule, i, model%step(i)%schedule, &
                         stop_times(model, i, analysis%schedule%total_time))
-        analysis%u_start = displacements(analysis%body%points)
+        analysis%u_start = displacements(analysis%body%points, model%step(i)%geostatic)
         call begin_watch(analysis%watch)
       end if
       call solve_step(analysis, output, state, model, error)
@@ -102,7 +102,7 @@ contains
       call make_run_state(state, model%mesh%n_dim, model%mesh%n_node, model%mesh%n_el, &
                           model%patches%n)
       state%started = wall_time()
-      analysis%u_start = displacements(analysis%body%points)
+      analysis%u_start = displacements(analysis%body%points, .false.)
     end if
     call find_active(analysis%system, analysis%body%points)
     if (output%metered .and. .not. loaded) call note_checkerboard(state, analysis%body)
@@ -112,12 +112,14 @@ contains
     call keep_point(analysis, output, state)
   end subroutine begin_run
 
-  !> Displacements of the points by their id.
-  pure function displacements(points) result(u)
+  !> Displacements of the points by their id, none where nobody asks for them.
+  pure function displacements(points, wanted) result(u)
     type(points_t), intent(in) :: points
-    real(dp) :: u(size(points%u, 1), points%n) !! [length]
+    logical, intent(in) :: wanted
+    real(dp), allocatable :: u(:, :) !! (n_dim, n) or (n_dim, 0) [length]
 
-    u = points%u(:, points%place)
+    allocate (u(size(points%u, 1), merge(points%n, 0, wanted)))
+    if (wanted) u(:, :) = points%u(:, points%place)
   end function displacements
 
   !> Step times that increments must hit in the step that a restart goes on in.
@@ -326,8 +328,8 @@ contains
       call memory_error(error, system, "pattern")
       return
     end if
-    gives_back = give_back_memory() ! factors need most of all
     call prepare_factors(system%recycler, system%solver, system%tangent, outcome)
+    gives_back = give_back_memory() ! the analysis needed much, the factors need most of all
     if (outcome == solver_memory) then
       call memory_error(error, system, "analysis")
     else if (outcome /= solver_ok) then

@@ -76,13 +76,23 @@ contains
     restart%points = model%points
     restart%surface = model%surface
     restart%mesh_x = model%mesh%x
-    restart%u_start = model%points%u
+    allocate (restart%u_start(model%mesh%n_dim, merge(model%points%n, 0, &
+                              in_geostatic_step(model, restart%schedule%step))), source=0.0_dp)
     call make_run_state(restart%state, model%mesh%n_dim, model%mesh%n_node, model%mesh%n_el, &
                         model%patches%n)
     call exchange_run(record, restart, model, error)
     call close_record(record, error)
     restart%is_loaded = .not. allocated(error)
   end subroutine read_restart
+
+  !> Whether a step looks at the way of the points since its beginning.
+  pure logical function in_geostatic_step(model, i_step)
+    type(model_t), intent(in) :: model
+    integer, intent(in)       :: i_step !! number of the step, 0: none has begun
+
+    in_geostatic_step = .false.
+    if (i_step >= 1 .and. i_step <= size(model%step)) in_geostatic_step = model%step(i_step)%geostatic
+  end function in_geostatic_step
 
   !> What run it is and where it stands.
   subroutine exchange_identity(record, restart, error)

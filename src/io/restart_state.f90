@@ -161,7 +161,9 @@ contains
     type(error_t), allocatable, intent(inout) :: error !! exit_file
 
     call exchange_reals(record, "mesh_x", shape(restart%mesh_x), restart%mesh_x, error)
-    call exchange_reals(record, "u_start", shape(restart%u_start), restart%u_start, error)
+    if (size(restart%u_start) > 0) then
+      call exchange_reals(record, "u_start", shape(restart%u_start), restart%u_start, error)
+    end if
     call exchange_points(record, restart%points, n_el, error)
     if (restart%surface%n == 0 .or. allocated(error)) return
     associate (surface => restart%surface)
