@@ -21,6 +21,7 @@ module mpm_results_file
 
   character(8), parameter :: default_fields(12) = [character(8) :: "S", "TAU", "LE", "PEEQ", "J", &
     "JBAR", "U", "VOL", "MAT", "PATCH", "ELEMENT", "ID"]
+  character(8), parameter :: constant_fields(2) = [character(8) :: "MAT", "ID"]
   real(dp), parameter :: time_tolerance = 1.0e-9_dp !! relative to the period of a step
 
   !> The two files.
@@ -97,17 +98,23 @@ contains
     type(error_t), allocatable, intent(inout) :: error !! exit_file
     integer, allocatable :: kept(:)
     real(dp), allocatable :: values(:, :)
+    logical :: same_points
     integer :: i, n
 
     n = count(points%status /= status_removed)
     kept = pack(points%place, points%status(points%place) /= status_removed) ! by id
-    if (n /= results%n_written) then
+    same_points = n == results%n_written ! points may leave, but none comes back
+    if (.not. same_points) then
       call write_cells(results%points, vtk_vertex, reshape([(i, i=1, n)], [1, n]), n, error)
     end if
     results%n_written = n
     call begin_vtk_step(results%points, time, points%x(:, kept), error)
     do i = 1, size(results%field)
       if (allocated(error)) return
+      if (same_points .and. any(results%field(i) == constant_fields)) then
+        call repeat_field(results%points, i, error)
+        cycle
+      end if
       values = point_field(points, model%patches, trim(results%field(i)), kept)
       if (is_integer_field(trim(results%field(i)))) then
         call write_integer_field(results%points, i, nint(values(1, :)), error)
