@@ -215,7 +215,7 @@ def test_points_are_matched_by_their_number(bar, twin, post):
         grid = file["VTKHDF"]
         for dataset in (grid["Points"], *grid["PointData"].values()):
             values = dataset[()]
-            for step in range(5):
+            for step in range(len(values) // 96):  # what never changes stands there once
                 values[96 * step : 96 * (step + 1)] = values[96 * step : 96 * (step + 1)][order]
             dataset[...] = values
     code, out, _ = post("compare", bar, twin)
