@@ -92,11 +92,14 @@ contains
     type(factor_estimate_t), intent(in) :: factors
     character(:), allocatable :: text
 
-    text = row("nonzeros of the factors", count_text(factors%entries)//", at most "// &
-               count_text(factors%entries_bound))// &
-           row("flops of a factorisation", short_text(factors%flops)//", at most "// &
-               short_text(factors%flops_bound))// &
-           row("memory of a factorisation", size_text(factors%peak)//", at most "// &
+    text = ""
+    if (factors%entries > 0.0_dp) then
+      text = row("nonzeros of the factors", count_text(factors%entries)//", at most "// &
+                 count_text(factors%entries_bound))// &
+             row("flops of a factorisation", short_text(factors%flops)//", at most "// &
+                 short_text(factors%flops_bound))
+    end if
+    text = text//row("memory of a factorisation", size_text(factors%peak)//", at most "// &
                size_text(factors%peak_bound))
   end function factors_text
 

@@ -34,7 +34,7 @@ module mpm_factor_estimate
 
 contains
 
-  !> Reads the analysis. Without the fill of a symmetric ordering the bounds are expected.
+  !> Reads the analysis; entries and flops stay zero if they are not known. Without the fill of a symmetric ordering the bounds are expected.
   pure function factor_estimate(solver, nnz) result(estimate)
     type(linear_solver_t), intent(in) :: solver !! analysed
     real(dp), intent(in) :: nnz                 !! stored entries of the matrix
@@ -42,8 +42,13 @@ contains
     real(dp) :: of_matrix
 
     associate (info => solver%info)
-      if (info(info_unit) <= 0.0_dp) return
       of_matrix = bytes_of_entry*nnz
+      if (info(info_unit) <= 0.0_dp) then ! another library, which only tells its memory
+        if (solver%memory > 0.0_dp) estimate%peak = solver%memory + of_matrix
+        estimate%kept = solver%memory
+        estimate%peak_bound = estimate%peak
+        return
+      end if
       estimate%entries_bound = info(info_entries_l) + info(info_entries_u)
       estimate%flops_bound = info(info_flops_estimate)
       estimate%peak_bound = info(info_peak_estimate)*info(info_unit) + of_matrix
