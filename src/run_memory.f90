@@ -13,7 +13,7 @@ module mpm_run_memory
   private
   public :: check_limit, check_memory, memory_of_run
 
-  integer, parameter :: copies = 3          !! of mesh and points: as read, as chosen, as they move
+  integer, parameter :: copies = 2          !! of the mesh: as read, and as it moves
   real(dp), parameter :: program = 3.0e7_dp !! code and libraries of the smallest run [bytes]
   real(dp), parameter :: left_over = 1.08_dp !! with what was freed when the model was built
   real(dp), parameter :: gigabyte = 1.0e9_dp
@@ -116,16 +116,17 @@ contains
     type(model_t), intent(in) :: model
     type(memory_need_t) :: need
     integer, parameter :: trial = 20, start = 1 ! reals of a trial state; displacements kept
+    integer, parameter :: of_output = 120 ! bytes: a tensor field, as it is and as it is stored
 
     need%program = program
     associate (n => model%points%n, n_dim => model%mesh%n_dim, n_el => model%mesh%n_el)
-      need%points = real(copies, dp)*real(bytes_of_points(n, n_dim), dp) &
+      need%points = real(bytes_of_points(n, n_dim), dp) &
                     + 8.0_dp*real(trial + start*n_dim, dp)*real(n, dp)
       need%points = left_over*need%points
       need%mesh = real(copies, dp)*bytes_of_mesh(model) &
                   + 8.0_dp*real(full_tensors + n_dim*(n_dim + 1) + sums, dp)*real(n_el, dp)
       need%mesh = left_over*need%mesh
-      need%saving = real(bytes_of_points(n, n_dim), dp)
+      need%saving = real(of_output, dp)*real(n, dp)
     end associate
   end function memory_of_model
 
