@@ -22,6 +22,7 @@ module mpm_run_failure
 
   character(*), parameter :: line_end = new_line("a")
   real(dp), parameter :: doubtful_rcond = 1.0e-12_dp !! pivot ratio that may come from a free mode
+  real(dp), parameter :: hopeless_rcond = 1.0e-14_dp !! pivot ratio of rounding errors
 
 contains
 
@@ -45,8 +46,9 @@ contains
     end if
   end subroutine shorten
 
-  !> Calls a tangent singular that has a free mode, pivots of rounding errors, and a displacement
-  !! beyond the mesh to show for it: such a solution has no meaning, whatever its residual.
+  !> Calls a tangent singular that has a free mode and pivots of rounding errors, or doubtful ones and
+  !! a displacement beyond the mesh to show for it: such a solution has no meaning, whatever its
+  !! residual.
   pure subroutine refuse_mechanism(report, body, u, schedule, model)
     type(newton_report_t), intent(inout) :: report   !! its outcome may change
     type(body_t), intent(in)     :: body             !! converged
@@ -56,7 +58,8 @@ contains
 
     if (all(report%outcome /= [outcome_converged, outcome_stretched])) return
     if (report%rcond > doubtful_rcond) return
-    if (maxval(abs(u)) <= maxval(maxval(body%mesh%x, dim=2) - minval(body%mesh%x, dim=2))) return
+    if (report%rcond > hopeless_rcond .and. maxval(abs(u)) <= &
+        maxval(maxval(body%mesh%x, dim=2) - minval(body%mesh%x, dim=2))) return
     if (len(free_modes_text(body, model, schedule%step)) > 0) report%outcome = outcome_singular
   end subroutine refuse_mechanism
 
