@@ -44,7 +44,7 @@ contains
     forcing%accuracy%ahead = 0.0_dp
     if (norm > 0.0_dp .and. residual > 0.0_dp) then
       floor_of_goal = below*tolerance*(norm/residual)
-      forcing%accuracy%ahead = max(0.0_dp, log10(residual/max(tolerance, epsilon(norm))))
+      forcing%accuracy%ahead = max(0.0_dp, log10(residual/max(below*tolerance, epsilon(norm))))
     end if
     forcing%accuracy%goal = min(largest*norm_rhs, max(eta*norm_rhs, floor_of_goal))
   end subroutine choose_accuracy

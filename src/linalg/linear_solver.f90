@@ -154,14 +154,14 @@ contains
   end function has_factors
 
   !> Work of the last factorisation, counted and not timed, so that it is the same in every run.
-  !! Source: theory.md (15i).
+  !! Source: theory.md (15h).
   pure real(dp) function work_of_factors(solver) result(work)
     type(linear_solver_t), intent(in) :: solver !! factorised
 
     work = solver%info(info_flops)/flops_per_entry + passes*solver%info(info_entries)
   end function work_of_factors
 
-  !> Work of a solution with the factors and a product with the matrix. Source: theory.md (15i).
+  !> Work of a solution with the factors and a product with the matrix. Source: theory.md (15h).
   pure real(dp) function work_of_solution(solver, matrix) result(work)
     type(linear_solver_t), intent(in) :: solver !! factorised
     type(csc_matrix_t), intent(in) :: matrix

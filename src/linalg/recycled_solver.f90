@@ -18,6 +18,7 @@ module mpm_recycled_solver
 
   integer, parameter  :: n_largest = 40            !! directions of GMRES between two restarts
   real(dp), parameter :: decided = 1.3_dp          !! digits of a solution that are worth new factors
+  real(dp), parameter :: growth = 1.5_dp           !! of the work per digit until an increment ends
   real(dp), parameter :: fewest_digits = 1.0e-3_dp !! that count as asked for
 
   !> What is wanted of a solution.
@@ -132,7 +133,8 @@ contains
     serve_on = factors%is_there .and. has_factors(solver)
     if (.not. serve_on .or. digits < decided) return
     afresh = work_of_factors(solver) + ahead*work_of_solution(solver, matrix)
-    serve_on = factors%rate*ahead <= afresh .and. factors%rate*factors%digits <= factors%work
+    serve_on = growth*factors%rate*ahead <= afresh &
+               .and. factors%rate*factors%digits <= factors%work
   end function serve_on
 
   !> GMRES, for at most the work of new factors.
