@@ -1,10 +1,11 @@
 # Foreign libraries, each behind one target: UMFPACK::UMFPACK, METIS::METIS, ZLIB::ZLIB, tessera_hdf5,
-# and ISAL::ISAL where it is there.
+# and MUMPS::MUMPS and ISAL::ISAL where they are there.
 
 find_package(UMFPACK 5.7 REQUIRED)
 find_package(METIS 5.1 REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(ISAL) # fields are packed six times as fast with it
+find_package(MUMPS 5.1) # LINEAR SOLVER=MUMPS of a deck needs it, nothing else
 
 # Without the component HL, which nothing here uses: on a Debian without the development files of curl
 # and OpenSSL CMake takes it for found, but names a library that does not exist.

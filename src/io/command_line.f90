@@ -1,7 +1,7 @@
 !> The command line: options, their help, and what is wrong with them.
 module mpm_command_line
   use mpm_build_info, only: build_type, compiler, git_revision, hdf5_version, metis_version, &
-    umfpack_version, version
+    mumps_version, umfpack_version, version
   use mpm_error, only: error_t, exit_usage, make_error
   use mpm_kinds, only: dp
   use mpm_model, only: formulation_fbar, formulation_standard
@@ -385,6 +385,7 @@ contains
     text = "tessera "//version//" ("//git_revision//", "//build_type//")"//new_line("a")// &
            compiler//", HDF5 "//hdf5_version//", UMFPACK "//umfpack_version//", METIS "// &
            metis_version
+    if (len(mumps_version) > 0) text = text//", MUMPS "//mumps_version
   end function version_text
 
 end module mpm_command_line

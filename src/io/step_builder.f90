@@ -244,7 +244,7 @@ contains
       newton%linear_solver = method_of_name(parameter_choice(card, "LINEAR SOLVER", &
                                                              method_name(newton%linear_solver)))
       newton%eigenvalues = newton%eigenvalues .or. has_parameter(card, "EIGENVALUES")
-      if (newton%linear_solver == method_mumps .and. .not. has_mumps &
+      if (newton%linear_solver == method_mumps .and. .not. has_mumps() &
           .and. has_parameter(card, "LINEAR SOLVER")) then
         call fault(context, deck, at_parameter(i_card, "LINEAR SOLVER"), &
                    "this program was built without MUMPS: expected DIRECT or RECYCLED")

@@ -1,10 +1,13 @@
 !> Direct solution of sparse linear systems: the one seam behind which solvers are exchanged.
 module mpm_linear_solver
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-  use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_long, &
+    c_null_ptr, c_ptr
   use mpm_csc_matrix, only: csc_matrix_t
   use mpm_kinds, only: dp, ip
   use mpm_memory, only: has_room
+  use mpm_mumps_binding, only: mumps_analyse, mumps_close, mumps_factorize, mumps_is_there, &
+    mumps_ok, mumps_singular, mumps_solve
   use mpm_openblas_binding, only: dtrsm, openblas_set_num_threads
   use mpm_umfpack_binding, only: control_ordering, control_refinements, control_strategy, &
     info_entries, info_flops, info_peak, info_peak_estimate, info_rcond, info_unit, &
@@ -15,15 +18,13 @@ module mpm_linear_solver
   implicit none
   private
   public :: linear_solver_t, analyse, factorize, solve, free_solver
-  public :: has_factors, has_mumps, is_analysed, work_of_factors, work_of_solution
+  public :: choose_library, has_factors, has_mumps, is_analysed, work_of_factors, work_of_solution
   public :: solver_ok, solver_singular, solver_memory, solver_not_finite
 
   integer, parameter :: solver_ok = 0       !! done
   integer, parameter :: solver_singular = 1 !! matrix singular to machine precision, or not finite
   integer, parameter :: solver_memory = 2   !! out of memory
   integer, parameter :: solver_not_finite = 3 !! the solution holds infinity or no numbers
-
-  logical, parameter :: has_mumps = .false.  !! this program was built with MUMPS
 
   integer(ip), parameter :: blas_buffer = 135000000_ip !! a little more than OpenBLAS takes [bytes]
   real(dp), parameter :: smallest_rcond = 1.0e-16_dp !! pivot ratio below which no digit is left
@@ -33,6 +34,8 @@ module mpm_linear_solver
   type :: linear_solver_t
     type(c_ptr) :: symbolic = c_null_ptr                   !! analysis of the pattern
     type(c_ptr) :: numeric = c_null_ptr                    !! factors
+    type(c_ptr) :: mumps = c_null_ptr                      !! analysis and factors of MUMPS
+    logical     :: by_mumps = .false.                      !! MUMPS in place of UMFPACK
     real(dp)    :: control(0:umfpack_control - 1) = 0.0_dp !! controls of UMFPACK
     real(dp)    :: info(0:umfpack_info - 1) = 0.0_dp       !! statistics of UMFPACK's last call
     real(dp)    :: memory = 0.0_dp      !! estimate for a factorisation by the last analysis, 0 if
@@ -59,6 +62,7 @@ contains
     type(csc_matrix_t), intent(in) :: matrix       !! pattern; values only need to exist
     integer, intent(out) :: outcome                !! solver_*
     integer(ip) :: status
+    integer(c_int) :: code
 
     call free_solver(solver)
     outcome = solver_ok
@@ -68,6 +72,13 @@ contains
     call openblas_set_num_threads(1_c_int)
     call take_blas_buffer(outcome)
     if (outcome /= solver_ok) return
+    solver%n_analyses = solver%n_analyses + 1
+    if (solver%by_mumps) then
+      solver%mumps = mumps_analyse(int(matrix%n, c_int), int(matrix%nnz, c_long), &
+                                   matrix%col_ptr, matrix%row, code, solver%memory)
+      outcome = outcome_of_mumps(code)
+      return
+    end if
     call umfpack_dl_defaults(solver%control)
     solver%control(control_strategy) = real(strategy_symmetric, dp)
     solver%control(control_ordering) = real(ordering_cholmod, dp)
@@ -75,7 +86,6 @@ contains
     status = umfpack_dl_symbolic(int(matrix%n, ip), int(matrix%n, ip), matrix%col_ptr, &
                                  matrix%row, matrix%val, solver%symbolic, solver%control, &
                                  solver%info)
-    solver%n_analyses = solver%n_analyses + 1
     outcome = outcome_of(status)
     if (outcome == solver_ok) solver%memory = solver%info(info_peak_estimate) &
                                               *solver%info(info_unit)
@@ -113,12 +123,16 @@ contains
     solver%rcond = 0.0_dp
     outcome = solver_singular
     if (.not. all(ieee_is_finite(matrix%val))) return
-    status = umfpack_dl_numeric(matrix%col_ptr, matrix%row, matrix%val, solver%symbolic, &
-                                solver%numeric, solver%control, solver%info)
     solver%n_factorizations = solver%n_factorizations + 1
-    solver%rcond = solver%info(info_rcond)
-    solver%most_memory = max(solver%most_memory, solver%info(info_peak)*solver%info(info_unit))
-    outcome = outcome_of(status)
+    if (solver%by_mumps) then
+      outcome = outcome_of_mumps(mumps_factorize(solver%mumps, matrix%val, solver%rcond))
+    else
+      status = umfpack_dl_numeric(matrix%col_ptr, matrix%row, matrix%val, solver%symbolic, &
+                                  solver%numeric, solver%control, solver%info)
+      solver%rcond = solver%info(info_rcond)
+      solver%most_memory = max(solver%most_memory, solver%info(info_peak)*solver%info(info_unit))
+      outcome = outcome_of(status)
+    end if
     if (outcome == solver_ok .and. .not. solver%rcond > smallest_rcond) outcome = solver_singular
   end subroutine factorize
 
@@ -133,9 +147,14 @@ contains
 
     outcome = solver_ok
     if (matrix%n == 0) return
-    status = umfpack_dl_solve(system_a, matrix%col_ptr, matrix%row, matrix%val, x, rhs, &
-                              solver%numeric, solver%control, solver%info)
-    outcome = outcome_of(status)
+    if (solver%by_mumps) then
+      x = rhs
+      outcome = outcome_of_mumps(mumps_solve(solver%mumps, x))
+    else
+      status = umfpack_dl_solve(system_a, matrix%col_ptr, matrix%row, matrix%val, x, rhs, &
+                                solver%numeric, solver%control, solver%info)
+      outcome = outcome_of(status)
+    end if
     if (outcome == solver_ok .and. .not. all(ieee_is_finite(x))) outcome = solver_not_finite
   end subroutine solve
 
@@ -143,7 +162,7 @@ contains
   pure logical function is_analysed(solver)
     type(linear_solver_t), intent(in) :: solver
 
-    is_analysed = c_associated(solver%symbolic)
+    is_analysed = c_associated(solver%symbolic) .or. c_associated(solver%mumps)
   end function is_analysed
 
   !> Whether there are factors to solve with.
@@ -175,9 +194,40 @@ contains
 
     if (c_associated(solver%numeric)) call umfpack_dl_free_numeric(solver%numeric)
     if (c_associated(solver%symbolic)) call umfpack_dl_free_symbolic(solver%symbolic)
+    call mumps_close(solver%mumps)
     solver%numeric = c_null_ptr
     solver%symbolic = c_null_ptr
+    solver%mumps = c_null_ptr
   end subroutine free_solver
+
+  !> Whether this program was built with MUMPS.
+  logical function has_mumps()
+    has_mumps = mumps_is_there() == 1_c_int
+  end function has_mumps
+
+  !> Takes MUMPS or UMFPACK from now on; what the other one has made is released.
+  subroutine choose_library(solver, by_mumps)
+    type(linear_solver_t), intent(inout) :: solver !! without analysis if it is another one
+    logical, intent(in) :: by_mumps                !! only where has_mumps()
+
+    if (solver%by_mumps .neqv. by_mumps) call free_solver(solver)
+    solver%by_mumps = by_mumps
+  end subroutine choose_library
+
+  !> Outcome that belongs to a status of MUMPS.
+  pure function outcome_of_mumps(status) result(outcome)
+    integer(c_int), intent(in) :: status !! of mpm_mumps_binding
+    integer :: outcome                   !! solver_*
+
+    select case (status)
+    case (mumps_ok)
+      outcome = solver_ok
+    case (mumps_singular)
+      outcome = solver_singular
+    case default
+      outcome = solver_memory
+    end select
+  end function outcome_of_mumps
 
   !> Outcome that belongs to a status of UMFPACK.
   pure function outcome_of(status) result(outcome)

@@ -1,0 +1,95 @@
+"""Linear solvers of *CONTROLS: one answer, and the refusal of the one that is not there."""
+
+import numpy as np
+import pytest
+from restart_runs import CUBE, PLATE, STRIP, datasets
+
+MECHANISM = """\
+*GENERATE, TYPE=BOX, DIMENSION=2, ORDER=QUADRATIC
+X, 0, 2, 2
+Y, 0, 1, 1
+*FORMULATION, TYPE=FBAR PATCH
+*PATCH, SOURCE=QUADRATIC
+*MATERIAL, NAME=CLAY
+*DENSITY
+2.0
+*ELASTIC
+1000, 0.3
+*MATERIAL POINTS, ELSET=ALL, MATERIAL=CLAY, PER ELEMENT=4
+*STEP
+*STATIC
+1, 1
+*CONTROLS, LINEAR SOLVER={solver}
+*BOUNDARY
+X0, 1, 1
+*DLOAD
+ALL, GRAV, 1.0, 0, -1
+*END STEP
+"""
+
+
+def solved_by(deck, solver):
+    first, rest = deck.split("*STEP", 1)
+    line, rest = rest.split("\n", 1)
+    return f"{first}*STEP{line}\n*CONTROLS, LINEAR SOLVER={solver}\n{rest}"
+
+
+@pytest.fixture
+def mumps(run_tessera):
+    """Whether the program was built with MUMPS."""
+    return "MUMPS" in run_tessera("", "--version").stdout
+
+
+def history_of(run_tessera, tmp_path, deck, solver):
+    run = run_tessera(solved_by(deck, solver), "-q", "-o", solver)
+    assert (run.code, run.stderr) == (0, "")
+    log = (tmp_path / solver / "job.log").read_text()
+    assert f"linear solver: {solver}\n" in log
+    return datasets(tmp_path / solver / "job.vtkhdf"), log
+
+
+@pytest.mark.parametrize(
+    ("deck", "solver"),
+    [(CUBE, "RECYCLED"), (STRIP, "RECYCLED"), (PLATE, "MUMPS"), (STRIP, "MUMPS")],
+    ids=["cube-recycled", "strip-recycled", "plate-mumps", "strip-mumps"],
+)
+def test_solvers_agree_in_every_value_of_the_history(run_tessera, tmp_path, mumps, deck, solver):
+    if solver == "MUMPS" and not mumps:
+        pytest.skip("this program was built without MUMPS")
+    direct, log = history_of(run_tessera, tmp_path, deck, "DIRECT")
+    assert "gmres" not in log
+    other, log = history_of(run_tessera, tmp_path, deck, solver)
+    assert ("gmres" in log) == (solver == "RECYCLED")
+    names = [name for name in direct if name.startswith("tessera/history/")]
+    assert len(names) > 2
+    for name in names:
+        limit = 1e-8 * max(np.abs(direct[name]).max(), 1e-30)
+        assert np.abs(other[name] - direct[name]).max() <= limit, name
+
+
+def test_recycling_makes_few_factors(run_tessera, tmp_path):
+    table, log = history_of(run_tessera, tmp_path, STRIP, "RECYCLED")
+    new = table["tessera/iterations/new_factors"]
+    corrections = table["tessera/iterations/iteration"] > 0
+    assert new[~corrections].sum() == 0
+    assert 1 <= new.sum() <= 0.5 * corrections.sum()
+    assert log.count("new factors") == new.sum()
+    assert (table["tessera/iterations/gmres"][new == 0][1:] > 0).sum() > 0
+
+
+@pytest.mark.parametrize("solver", ["DIRECT", "RECYCLED", "MUMPS"])
+def test_every_solver_refuses_a_mechanism(run_tessera, mumps, solver):
+    if solver == "MUMPS" and not mumps:
+        pytest.skip("this program was built without MUMPS")
+    run = run_tessera(MECHANISM.format(solver=solver), "-q", "--lax")
+    assert run.code == 3
+    assert "free to move" in run.stderr
+
+
+def test_mumps_is_refused_where_it_is_not(run_tessera, mumps):
+    if mumps:
+        pytest.skip("this program was built with MUMPS")
+    run = run_tessera(solved_by(STRIP, "MUMPS"))
+    assert run.code == 2
+    assert "error: this program was built without MUMPS: expected DIRECT or RECYCLED" in run.stderr
+    assert "*CONTROLS, LINEAR SOLVER=MUMPS" in run.stderr
