@@ -10,7 +10,7 @@ module mpm_equilibrium
   use mpm_kinematics, only: find_largest_stretch
   use mpm_linear_method, only: method_automatic
   use mpm_linear_solver, only: solver_memory, solver_not_finite, solver_ok
-  use mpm_residual_norm, only: force_scale, relative, worst_node
+  use mpm_residual_norm, only: force_scale, node_of_largest, relative
   use mpm_system, only: body_t, evaluate, evaluate_force, evaluation_inverted, evaluation_ok, system_t
   use mpm_tangent_solution, only: choose_accuracy, factorize_again, forcing_t, solve_tangent
   implicit none
@@ -116,7 +116,7 @@ contains
     if (report%outcome == outcome_converged .and. settings%eigenvalues) then
       call find_eigenvalues(report%eigenvalues, system%solver, system%tangent)
     end if
-    report%worst_node = worst_node(system)
+    report%worst_node = node_of_largest(system)
     call close_report(report)
   end subroutine find_equilibrium
 

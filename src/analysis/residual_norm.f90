@@ -6,7 +6,7 @@ module mpm_residual_norm
   use mpm_system, only: system_t
   implicit none
   private
-  public :: force_scale, relative, worst_node
+  public :: force_scale, node_of_largest, relative
 
 contains
 
@@ -37,7 +37,7 @@ contains
   end function relative
 
   !> Node with the largest residual; the first one where it is no number, if there is any.
-  pure function worst_node(system) result(node)
+  pure function node_of_largest(system) result(node)
     type(system_t), intent(in) :: system
     integer :: node
     real(dp) :: largest, here, local(size(system%u, 1))
@@ -58,6 +58,6 @@ contains
         node = a
       end if
     end do
-  end function worst_node
+  end function node_of_largest
 
 end module mpm_residual_norm

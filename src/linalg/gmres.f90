@@ -94,7 +94,8 @@ contains
     real(dp), intent(in) :: goal                   !! norm of the residual
     integer, intent(in)  :: limit                  !! iterations in all
     integer, intent(out) :: outcome                !! gmres_limit also means: time to restart
-    integer :: k, solved
+    integer :: k
+    logical :: is_good
 
     outcome = gmres_failed
     if (.not. ieee_is_finite(gmres%residual)) return
@@ -105,20 +106,34 @@ contains
     gmres%target = 0.0_dp
     gmres%target(1) = gmres%residual
     do k = 1, gmres%n_largest
-      call solve(solver, matrix, gmres%basis(:, k), gmres%direction(:, k), solved)
-      if (solved /= solver_ok) return
-      call multiply(matrix, gmres%direction(:, k), gmres%basis(:, k + 1))
-      gmres%n_iterations = gmres%n_iterations + 1
-      call make_orthonormal(gmres, k)
-      call turn_column(gmres, k)
-      if (.not. gmres%triangle(k, k) > least_pivot*norm2(gmres%triangle(:k, k))) return
-      gmres%residual = abs(gmres%target(k + 1))
-      if (.not. ieee_is_finite(gmres%residual)) return
+      call take_direction(gmres, is_good, solver, matrix, k)
+      if (.not. is_good) return
       if (gmres%residual <= goal .or. gmres%n_iterations >= limit) exit
     end do
     call add_directions(gmres, x, min(k, gmres%n_largest))
     outcome = merge(gmres_converged, gmres_limit, gmres%residual <= goal)
   end subroutine run_cycle
+
+  !> A new direction and the residual with it.
+  subroutine take_direction(gmres, is_good, solver, matrix, k)
+    type(gmres_t), intent(inout) :: gmres          !! column k of the basis is the last one
+    logical, intent(out) :: is_good                !! .false.: not finite, or A is singular
+    type(linear_solver_t), intent(inout) :: solver !! factors of a matrix like A
+    type(csc_matrix_t), intent(in) :: matrix       !! A
+    integer, intent(in) :: k                       !! number of the iteration in the cycle
+    integer :: solved
+
+    call solve(solver, matrix, gmres%basis(:, k), gmres%direction(:, k), solved)
+    is_good = solved == solver_ok
+    if (.not. is_good) return
+    call multiply(matrix, gmres%direction(:, k), gmres%basis(:, k + 1))
+    gmres%n_iterations = gmres%n_iterations + 1
+    call make_orthonormal(gmres, k)
+    call turn_column(gmres, k)
+    gmres%residual = abs(gmres%target(k + 1))
+    is_good = gmres%triangle(k, k) > least_pivot*norm2(gmres%triangle(:k, k)) &
+              .and. ieee_is_finite(gmres%residual)
+  end subroutine take_direction
 
   !> Makes a new direction orthogonal to those before, by modified Gram-Schmidt, and of unit length.
   !! A direction that depends on them ends the cycle with the solution.
