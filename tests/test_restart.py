@@ -24,7 +24,7 @@ GO_ON = "job.restart.h5"
         (CUBE, 5),
         (STRETCH, 16),
         (STRIP, 4),
-        (recycled(PLATE), 12),
+        (recycled(PLATE), 9),
         (recycled(CUBE), 5),
         (recycled(STRIP), 4),
     ],

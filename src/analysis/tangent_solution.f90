@@ -9,44 +9,54 @@ module mpm_tangent_solution
   private
   public :: forcing_t, choose_accuracy, factorize_again, solve_tangent
 
-  real(dp), parameter :: first = 0.01_dp  !! relative residual asked of a first solution
-  real(dp), parameter :: largest = 0.1_dp !! of any solution
-  real(dp), parameter :: factor = 0.9_dp  !! on the square of the fall of the last correction
-  real(dp), parameter :: below = 0.01_dp  !! least one over the tolerance of Newton's method
+  real(dp), parameter :: blind = 3.0e-4_dp   !! relative residual asked of a first solution from rest
+  real(dp), parameter :: first = 0.01_dp     !! of a first solution from the last increment
+  real(dp), parameter :: largest = 0.1_dp    !! of any solution
+  real(dp), parameter :: factor = 0.9_dp     !! on the square of the fall of the last correction
+  real(dp), parameter :: square = 0.1_dp     !! on the square of the residual over the forces
+  real(dp), parameter :: of_forces = 1.0e-3_dp !! largest residual over the forces
+  real(dp), parameter :: below = 0.01_dp     !! least one over the tolerance of Newton's method
+  real(dp), parameter :: settled = 0.1_dp    !! fall of a residual that shows Newton's method on its way
 
   !> What decides how accurately the next system is solved.
   type :: forcing_t
-    logical  :: begun = .false.    !! there was a correction before
+    logical  :: begun = .false.    !! there was a correction whose residual is known
     real(dp) :: norm = 0.0_dp      !! of Newton's residual before that correction [force]
     type(accuracy_t) :: accuracy   !! asked of the next solution
   end type forcing_t
 
 contains
 
-  !> Accuracy of the next solution by the second choice of Eisenstat and Walker: digits that the
-  !! correction is worth by the fall of the residual before. Source: theory.md (15g).
+  !> Accuracy of the next solution: digits that the correction is worth, by the fall of the
+  !! residual before (Eisenstat and Walker) and by its own size. Source: theory.md (15g).
   pure subroutine choose_accuracy(forcing, norm_rhs, norm, residual, tolerance)
     type(forcing_t), intent(inout) :: forcing
     real(dp), intent(in) :: norm_rhs  !! of the right-hand side [force]
     real(dp), intent(in) :: norm      !! of Newton's residual [force]; 0: it says nothing here
     real(dp), intent(in) :: residual  !! the same, relative [-]
     real(dp), intent(in) :: tolerance !! that it must reach [-]
-    real(dp) :: eta, floor_of_goal
+    real(dp) :: eta, scale
 
-    eta = first
-    if (forcing%begun) then
-      eta = factor
-      if (norm < forcing%norm) eta = factor*(norm/forcing%norm)**2
-    end if
-    forcing%begun = .true.
+    associate (accuracy => forcing%accuracy)
+      if (.not. (norm > 0.0_dp .and. residual > 0.0_dp)) then
+        accuracy = accuracy_t(goal=blind*norm_rhs, ahead=0.0_dp, decides=.false.)
+      else
+        eta = first
+        accuracy%decides = .true.
+        if (forcing%begun) then
+          eta = factor
+          if (norm < forcing%norm) eta = factor*(norm/forcing%norm)**2
+          accuracy%decides = norm < settled*forcing%norm
+        end if
+        scale = norm/residual
+        eta = min(eta, square*residual)
+        if (eta*residual > of_forces) eta = of_forces/residual
+        accuracy%goal = min(largest*norm_rhs, max(eta*norm_rhs, below*tolerance*scale))
+        accuracy%ahead = max(0.0_dp, log10(residual/max(below*tolerance, epsilon(norm))))
+      end if
+    end associate
+    forcing%begun = norm > 0.0_dp
     forcing%norm = norm
-    floor_of_goal = 0.0_dp
-    forcing%accuracy%ahead = 0.0_dp
-    if (norm > 0.0_dp .and. residual > 0.0_dp) then
-      floor_of_goal = below*tolerance*(norm/residual)
-      forcing%accuracy%ahead = max(0.0_dp, log10(residual/max(below*tolerance, epsilon(norm))))
-    end if
-    forcing%accuracy%goal = min(largest*norm_rhs, max(eta*norm_rhs, floor_of_goal))
   end subroutine choose_accuracy
 
   !> Solves for a correction. What it took is in system%recycler, also with the direct methods.

@@ -49,6 +49,7 @@ module mpm_linear_solver
   ! Work, in entries of the factors that are read from memory. Measured: theory.md (15i).
   real(dp), parameter :: flops_per_entry = 65.0_dp !! of a factorisation, in the time of one entry
   real(dp), parameter :: passes = 16.0_dp          !! over the factors while they are made
+  real(dp), parameter :: per_column = 1500.0_dp    !! of a factorisation, whatever its size
 
   !> OpenBLAS has its working memory: it belongs to the process, not to a solver.
   logical, save :: has_buffer = .false.
@@ -174,10 +175,12 @@ contains
 
   !> Work of the last factorisation, counted and not timed, so that it is the same in every run.
   !! Source: theory.md (15h).
-  pure real(dp) function work_of_factors(solver) result(work)
+  pure real(dp) function work_of_factors(solver, matrix) result(work)
     type(linear_solver_t), intent(in) :: solver !! factorised
+    type(csc_matrix_t), intent(in) :: matrix
 
-    work = solver%info(info_flops)/flops_per_entry + passes*solver%info(info_entries)
+    work = solver%info(info_flops)/flops_per_entry + passes*solver%info(info_entries) &
+           + per_column*real(matrix%n, dp)
   end function work_of_factors
 
   !> Work of a solution with the factors and a product with the matrix. Source: theory.md (15h).

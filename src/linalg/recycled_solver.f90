@@ -17,7 +17,6 @@ module mpm_recycled_solver
   public :: restore_factors, solve_recycled
 
   integer, parameter  :: n_largest = 40            !! directions of GMRES between two restarts
-  real(dp), parameter :: decided = 1.3_dp          !! digits of a solution that are worth new factors
   real(dp), parameter :: growth = 1.5_dp           !! of the work per digit until an increment ends
   real(dp), parameter :: fewest_digits = 1.0e-3_dp !! that count as asked for
 
@@ -26,6 +25,7 @@ module mpm_recycled_solver
     real(dp) :: goal = 0.0_dp  !! norm of its residual [as the right-hand side]
     real(dp) :: ahead = 0.0_dp !! decimal digits still to gain in this and the solutions that
                                !! follow soon, 0 if unknown
+    logical  :: decides = .true. !! new factors may be made because they are cheaper
   end type accuracy_t
 
   !> Which factors are in use and what they have cost; enough to make them again.
@@ -105,7 +105,7 @@ contains
     solved = .false.
     call cpu_time(clock(1))
     ! Nothing on the right-hand side would hide a singular matrix.
-    if (norm > 0.0_dp .and. serve_on(recycler%now, solver, matrix, digits, accuracy%ahead)) &
+    if (norm > 0.0_dp .and. serve_on(recycler%now, solver, matrix, accuracy)) &
       call iterate(recycler, x, solver, matrix, rhs, accuracy%goal, solved)
     call cpu_time(clock(2))
     if (.not. solved) call renew_factors(recycler, solver, matrix, outcome)
@@ -122,18 +122,17 @@ contains
   end subroutine solve_recycled
 
   !> Whether the factors in use serve one more solution. Source: theory.md (15i).
-  pure logical function serve_on(factors, solver, matrix, digits, ahead)
+  pure logical function serve_on(factors, solver, matrix, accuracy)
     type(factor_memory_t), intent(in) :: factors
     type(linear_solver_t), intent(in) :: solver !! with the factors
     type(csc_matrix_t), intent(in) :: matrix
-    real(dp), intent(in) :: digits              !! to gain in this solution
-    real(dp), intent(in) :: ahead               !! to gain in this one and those that follow soon
+    type(accuracy_t), intent(in) :: accuracy    !! of the solution
     real(dp) :: afresh
 
     serve_on = factors%is_there .and. has_factors(solver)
-    if (.not. serve_on .or. digits < decided) return
-    afresh = work_of_factors(solver) + ahead*work_of_solution(solver, matrix)
-    serve_on = growth*factors%rate*ahead <= afresh &
+    if (.not. (serve_on .and. accuracy%decides)) return
+    afresh = work_of_factors(solver, matrix) + accuracy%ahead*work_of_solution(solver, matrix)
+    serve_on = growth*factors%rate*accuracy%ahead <= afresh &
                .and. factors%rate*factors%digits <= factors%work
   end function serve_on
 
@@ -151,7 +150,7 @@ contains
 
     once = work_of_solution(solver, matrix)
     if (recycler%gmres%n /= matrix%n) call open_gmres(recycler%gmres, matrix%n, n_largest)
-    recycler%gmres%n_iterations = max(1, int(work_of_factors(solver)/once))
+    recycler%gmres%n_iterations = max(1, int(work_of_factors(solver, matrix)/once))
     call solve_by_gmres(recycler%gmres, x, solver, matrix, rhs, goal, outcome)
     recycler%n_iterations = recycler%gmres%n_iterations
     recycler%now%work = recycler%now%work + recycler%n_iterations*once
@@ -171,7 +170,7 @@ contains
     if (outcome /= solver_ok .or. matrix%nnz > int(huge(1), ip)) return
     recycler%now%val = matrix%val
     recycler%now%is_there = .true.
-    recycler%now%work = work_of_factors(solver)
+    recycler%now%work = work_of_factors(solver, matrix)
   end subroutine renew_factors
 
   !> The factors in use serve no more, only those of the last accepted increment are remembered.
