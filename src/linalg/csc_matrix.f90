@@ -3,7 +3,8 @@ module mpm_csc_matrix
   use mpm_kinds, only: dp, ip
   implicit none
   private
-  public :: csc_matrix_t, add_block, allocate_entries, find_entry, multiply, to_dense, zero_values
+  public :: csc_matrix_t, add_block, allocate_entries, equal_columns, find_entry, multiply
+  public :: multiply_by_groups, to_dense, zero_values
 
   !> A square matrix in compressed columns. Bounds and contents of the index arrays start at
   !! zero, so that they go to UMFPACK without a copy; rows ascend within a column.
@@ -96,6 +97,76 @@ contains
       end do
     end do
   end subroutine multiply
+
+  !> First columns of groups of up to three neighbours with the same rows, and n+1 behind them: the
+  !! unknowns of a node.
+  pure function equal_columns(matrix) result(first)
+    type(csc_matrix_t), intent(in) :: matrix !! pattern
+    integer, allocatable :: first(:)         !! (n_group+1)
+    integer, allocatable :: group(:)
+    integer :: j, k, n
+
+    allocate (group(matrix%n + 1))
+    n = 0
+    j = 1
+    do while (j <= matrix%n)
+      n = n + 1
+      group(n) = j
+      do k = j + 1, min(j + 2, matrix%n)
+        if (.not. has_rows_of(matrix, k, j)) exit
+      end do
+      j = k
+    end do
+    group(n + 1) = matrix%n + 1
+    first = group(:n + 1)
+  end function equal_columns
+
+  !> Whether two columns have the same rows.
+  pure logical function has_rows_of(matrix, j, other) result(equal)
+    type(csc_matrix_t), intent(in) :: matrix !! pattern
+    integer, intent(in) :: j, other          !! columns
+
+    associate (p => matrix%col_ptr)
+      equal = p(j) - p(j - 1) == p(other) - p(other - 1)
+      if (equal) equal = all(matrix%row(p(j - 1):p(j) - 1_ip) &
+                             == matrix%row(p(other - 1):p(other) - 1_ip))
+    end associate
+  end function has_rows_of
+
+  !> Product y = A x that reads the rows of equal columns once. Sums are in another order than in
+  !! `multiply`.
+  pure subroutine multiply_by_groups(matrix, first, x, y)
+    type(csc_matrix_t), intent(in) :: matrix !! A
+    integer, intent(in)   :: first(:)        !! (n_group+1)  of equal_columns
+    real(dp), intent(in)  :: x(:)            !! (n)
+    real(dp), intent(out) :: y(:)            !! (n)
+    integer :: g, j
+    integer(ip) :: i, k, n
+
+    y = 0.0_dp
+    do g = 1, size(first) - 1
+      j = first(g)
+      n = matrix%col_ptr(j) - matrix%col_ptr(j - 1)
+      select case (first(g + 1) - j)
+      case (3)
+        do k = matrix%col_ptr(j - 1), matrix%col_ptr(j) - 1_ip
+          i = matrix%row(k) + 1_ip
+          y(i) = y(i) + (matrix%val(k)*x(j) + matrix%val(k + n)*x(j + 1) &
+                         + matrix%val(k + 2_ip*n)*x(j + 2))
+        end do
+      case (2)
+        do k = matrix%col_ptr(j - 1), matrix%col_ptr(j) - 1_ip
+          i = matrix%row(k) + 1_ip
+          y(i) = y(i) + (matrix%val(k)*x(j) + matrix%val(k + n)*x(j + 1))
+        end do
+      case default
+        do k = matrix%col_ptr(j - 1), matrix%col_ptr(j) - 1_ip
+          i = matrix%row(k) + 1_ip
+          y(i) = y(i) + matrix%val(k)*x(j)
+        end do
+      end select
+    end do
+  end subroutine multiply_by_groups
 
   !> Dense copy, for tests and small problems.
   pure function to_dense(matrix) result(dense)

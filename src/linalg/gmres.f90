@@ -2,7 +2,7 @@
 !! Source: theory.md (15f).
 module mpm_gmres
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-  use mpm_csc_matrix, only: csc_matrix_t, multiply
+  use mpm_csc_matrix, only: csc_matrix_t, equal_columns, multiply_by_groups
   use mpm_kinds, only: dp
   use mpm_linear_solver, only: linear_solver_t, solve, solver_ok
   implicit none
@@ -22,6 +22,7 @@ module mpm_gmres
   type :: gmres_t
     integer :: n = 0                         !! equations
     integer :: n_largest = 0                 !! directions between two restarts
+    integer, allocatable  :: first(:)        !! (n_group+1)  columns of one pattern, see equal_columns
     real(dp), allocatable :: basis(:, :)     !! (n, n_largest+1)  orthonormal directions
     real(dp), allocatable :: direction(:, :) !! (n, n_largest)  the same, preconditioned
     real(dp), allocatable :: triangle(:, :)  !! (n_largest+1, n_largest)  least squares, reduced
@@ -33,13 +34,16 @@ module mpm_gmres
 
 contains
 
-  !> Makes room for systems of n equations.
-  pure subroutine open_gmres(gmres, n, n_largest)
+  !> Makes room for systems with a pattern.
+  pure subroutine open_gmres(gmres, matrix, n_largest)
     type(gmres_t), intent(out) :: gmres  !! with work space
-    integer, intent(in) :: n             !! equations
+    type(csc_matrix_t), intent(in) :: matrix !! pattern
     integer, intent(in) :: n_largest     !! directions between two restarts, at least 1
+    integer :: n
 
+    n = matrix%n
     gmres%n = n
+    gmres%first = equal_columns(matrix)
     gmres%n_largest = n_largest
     allocate (gmres%basis(n, n_largest + 1), source=0.0_dp)
     allocate (gmres%direction(n, n_largest), source=0.0_dp)
@@ -74,7 +78,7 @@ contains
       call run_cycle(gmres, x, solver, matrix, goal, limit, outcome)
       if (outcome /= gmres_limit .or. gmres%n_iterations >= limit) return
       ! The residual itself: that of the least squares may have drifted.
-      call multiply(matrix, x, gmres%basis(:, 1))
+      call multiply_by_groups(matrix, gmres%first, x, gmres%basis(:, 1))
       gmres%basis(:, 1) = rhs - gmres%basis(:, 1)
       gmres%residual = norm2(gmres%basis(:, 1))
       if (gmres%residual > least_fall*before) then
@@ -126,7 +130,7 @@ contains
     call solve(solver, matrix, gmres%basis(:, k), gmres%direction(:, k), solved)
     is_good = solved == solver_ok
     if (.not. is_good) return
-    call multiply(matrix, gmres%direction(:, k), gmres%basis(:, k + 1))
+    call multiply_by_groups(matrix, gmres%first, gmres%direction(:, k), gmres%basis(:, k + 1))
     gmres%n_iterations = gmres%n_iterations + 1
     call make_orthonormal(gmres, k)
     call turn_column(gmres, k)

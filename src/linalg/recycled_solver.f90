@@ -71,6 +71,7 @@ contains
     if (is_same .and. is_analysed(solver)) return
     call analyse(solver, matrix, outcome)
     if (.not. is_same) call forget_factors(recycler)
+    recycler%gmres = gmres_t()
     recycler%now%n = matrix%n
     recycler%now%nnz = int(min(matrix%nnz, int(huge(1), ip)))
     recycler%now%pattern = pattern
@@ -149,7 +150,7 @@ contains
     real(dp) :: once
 
     once = work_of_solution(solver, matrix)
-    if (recycler%gmres%n /= matrix%n) call open_gmres(recycler%gmres, matrix%n, n_largest)
+    if (recycler%gmres%n /= matrix%n) call open_gmres(recycler%gmres, matrix, n_largest)
     recycler%gmres%n_iterations = max(1, int(work_of_factors(solver, matrix)/once))
     call solve_by_gmres(recycler%gmres, x, solver, matrix, rhs, goal, outcome)
     recycler%n_iterations = recycler%gmres%n_iterations
