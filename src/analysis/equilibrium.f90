@@ -244,7 +244,7 @@ contains
     call cpu_time(clock(2))
     call choose_accuracy(newton%forcing, norm2(rhs), merge(newton%norm, 0.0_dp, &
                          iteration > 1 .or. newton%moved), report%residual(iteration - 1), &
-                         settings%tolerance)
+                         report%n_plastic > 0, settings%tolerance)
     call solve_tangent(newton%x, system, rhs, newton%forcing%accuracy, &
                        settings%linear_solver, outcome)
     if (system%dofs%n > 0) report%rcond = min(report%rcond, system%solver%rcond)

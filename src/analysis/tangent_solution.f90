@@ -13,15 +13,16 @@ module mpm_tangent_solution
   real(dp), parameter :: first = 0.01_dp     !! of a first solution from the last increment
   real(dp), parameter :: largest = 0.1_dp    !! of any solution
   real(dp), parameter :: factor = 0.9_dp     !! on the square of the fall of the last correction
-  real(dp), parameter :: square = 0.1_dp     !! on the square of the residual over the forces
-  real(dp), parameter :: of_forces = 1.0e-3_dp !! largest residual over the forces
+  ! Where no point flows, and where some do: digits are worth less then.
+  real(dp), parameter :: square(2) = [0.1_dp, 1.0_dp] !! on the square of the residual over the forces
+  real(dp), parameter :: of_forces(2) = [1.0e-3_dp, 1.0e-2_dp] !! largest residual over the forces
   real(dp), parameter :: below = 0.01_dp     !! least one over the tolerance of Newton's method
-  real(dp), parameter :: settled = 0.1_dp    !! fall of a residual that shows Newton's method on its way
+  real(dp), parameter :: settled = 0.2_dp    !! fall of a residual that shows Newton's method on its way
 
   !> What decides how accurately the next system is solved.
   type :: forcing_t
-    logical  :: begun = .false.    !! there was a correction whose residual is known
-    real(dp) :: norm = 0.0_dp      !! of Newton's residual before that correction [force]
+    logical  :: begun = .false.    !! there was a correction before
+    real(dp) :: norm = 0.0_dp      !! of Newton's residual before that one, 0 if unknown [force]
     type(accuracy_t) :: accuracy   !! asked of the next solution
   end type forcing_t
 
@@ -29,13 +30,15 @@ contains
 
   !> Accuracy of the next solution: digits that the correction is worth, by the fall of the
   !! residual before (Eisenstat and Walker) and by its own size. Source: theory.md (15g).
-  pure subroutine choose_accuracy(forcing, norm_rhs, norm, residual, tolerance)
+  pure subroutine choose_accuracy(forcing, norm_rhs, norm, residual, flows, tolerance)
     type(forcing_t), intent(inout) :: forcing
     real(dp), intent(in) :: norm_rhs  !! of the right-hand side [force]
     real(dp), intent(in) :: norm      !! of Newton's residual [force]; 0: it says nothing here
     real(dp), intent(in) :: residual  !! the same, relative [-]
+    logical, intent(in)  :: flows     !! there are points in plastic flow
     real(dp), intent(in) :: tolerance !! that it must reach [-]
     real(dp) :: eta, scale
+    integer  :: i
 
     associate (accuracy => forcing%accuracy)
       if (.not. (norm > 0.0_dp .and. residual > 0.0_dp)) then
@@ -49,13 +52,14 @@ contains
           accuracy%decides = norm < settled*forcing%norm
         end if
         scale = norm/residual
-        eta = min(eta, square*residual)
-        if (eta*residual > of_forces) eta = of_forces/residual
+        i = merge(2, 1, flows)
+        eta = min(eta, square(i)*residual)
+        if (eta*residual > of_forces(i)) eta = of_forces(i)/residual
         accuracy%goal = min(largest*norm_rhs, max(eta*norm_rhs, below*tolerance*scale))
         accuracy%ahead = max(0.0_dp, log10(residual/max(below*tolerance, epsilon(norm))))
       end if
     end associate
-    forcing%begun = norm > 0.0_dp
+    forcing%begun = .true.
     forcing%norm = norm
   end subroutine choose_accuracy
 
