@@ -9,15 +9,15 @@ module mpm_tangent_solution
   private
   public :: forcing_t, choose_accuracy, factorize_again, solve_tangent
 
-  real(dp), parameter :: blind = 3.0e-4_dp   !! relative residual asked of a first solution from rest
+  real(dp), parameter :: blind = 3.0e-4_dp   !! relative residual of a first solution from rest
   real(dp), parameter :: first = 0.01_dp     !! of a first solution from the last increment
   real(dp), parameter :: largest = 0.1_dp    !! of any solution
   real(dp), parameter :: factor = 0.9_dp     !! on the square of the fall of the last correction
   ! Where no point flows, and where some do: digits are worth less then.
-  real(dp), parameter :: square(2) = [0.1_dp, 1.0_dp] !! on the square of the residual over the forces
+  real(dp), parameter :: square(2) = [0.1_dp, 1.0_dp] !! on the square of the residual
   real(dp), parameter :: of_forces(2) = [1.0e-3_dp, 1.0e-2_dp] !! largest residual over the forces
   real(dp), parameter :: below = 0.01_dp     !! least one over the tolerance of Newton's method
-  real(dp), parameter :: settled = 0.2_dp    !! fall of a residual that shows Newton's method on its way
+  real(dp), parameter :: settled = 0.2_dp    !! fall of the residual that lets new factors pay
 
   !> What decides how accurately the next system is solved.
   type :: forcing_t

@@ -22,7 +22,7 @@ module mpm_gmres
   type :: gmres_t
     integer :: n = 0                         !! equations
     integer :: n_largest = 0                 !! directions between two restarts
-    integer, allocatable  :: first(:)        !! (n_group+1)  columns of one pattern, see equal_columns
+    integer, allocatable  :: first(:)        !! (n_group+1)  see equal_columns
     real(dp), allocatable :: basis(:, :)     !! (n, n_largest+1)  orthonormal directions
     real(dp), allocatable :: direction(:, :) !! (n, n_largest)  the same, preconditioned
     real(dp), allocatable :: triangle(:, :)  !! (n_largest+1, n_largest)  least squares, reduced

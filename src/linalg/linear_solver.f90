@@ -160,17 +160,19 @@ contains
   end subroutine solve
 
   !> Whether there is an analysis, so that a matrix can be factorised.
-  pure logical function is_analysed(solver)
+  pure function is_analysed(solver) result(is_there)
     type(linear_solver_t), intent(in) :: solver
+    logical :: is_there
 
-    is_analysed = c_associated(solver%symbolic) .or. c_associated(solver%mumps)
+    is_there = c_associated(solver%symbolic) .or. c_associated(solver%mumps)
   end function is_analysed
 
   !> Whether there are factors to solve with.
-  pure logical function has_factors(solver)
+  pure function has_factors(solver) result(are_there)
     type(linear_solver_t), intent(in) :: solver
+    logical :: are_there
 
-    has_factors = c_associated(solver%numeric)
+    are_there = c_associated(solver%numeric)
   end function has_factors
 
   !> Work of the last factorisation, counted and not timed, so that it is the same in every run.
@@ -204,8 +206,8 @@ contains
   end subroutine free_solver
 
   !> Whether this program was built with MUMPS.
-  logical function has_mumps()
-    has_mumps = mumps_is_there() == 1_c_int
+  logical function has_mumps() result(has)
+    has = mumps_is_there() == 1_c_int
   end function has_mumps
 
   !> Takes MUMPS or UMFPACK from now on; what the other one has made is released.

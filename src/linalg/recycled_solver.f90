@@ -8,8 +8,8 @@ module mpm_recycled_solver
   use mpm_csc_matrix, only: csc_matrix_t, zero_values
   use mpm_gmres, only: gmres_converged, gmres_t, open_gmres, solve_by_gmres
   use mpm_kinds, only: dp, ip
-  use mpm_linear_solver, only: analyse, factorize, has_factors, is_analysed, linear_solver_t, solve, &
-    solver_ok, work_of_factors, work_of_solution
+  use mpm_linear_solver, only: analyse, factorize, has_factors, is_analysed, linear_solver_t, &
+    solve, solver_ok, work_of_factors, work_of_solution
   implicit none
   private
   public :: accuracy_t, factor_memory_t, recycler_t
@@ -106,8 +106,9 @@ contains
     solved = .false.
     call cpu_time(clock(1))
     ! Nothing on the right-hand side would hide a singular matrix.
-    if (norm > 0.0_dp .and. serve_on(recycler%now, solver, matrix, accuracy)) &
+    if (norm > 0.0_dp .and. serve_on(recycler%now, solver, matrix, accuracy)) then
       call iterate(recycler, x, solver, matrix, rhs, accuracy%goal, solved)
+    end if
     call cpu_time(clock(2))
     if (.not. solved) call renew_factors(recycler, solver, matrix, outcome)
     call cpu_time(clock(3))
@@ -123,17 +124,18 @@ contains
   end subroutine solve_recycled
 
   !> Whether the factors in use serve one more solution. Source: theory.md (15i).
-  pure logical function serve_on(factors, solver, matrix, accuracy)
+  pure function serve_on(factors, solver, matrix, accuracy) result(serves)
     type(factor_memory_t), intent(in) :: factors
     type(linear_solver_t), intent(in) :: solver !! with the factors
     type(csc_matrix_t), intent(in) :: matrix
     type(accuracy_t), intent(in) :: accuracy    !! of the solution
+    logical  :: serves
     real(dp) :: afresh
 
-    serve_on = factors%is_there .and. has_factors(solver)
-    if (.not. (serve_on .and. accuracy%decides)) return
+    serves = factors%is_there .and. has_factors(solver)
+    if (.not. (serves .and. accuracy%decides)) return
     afresh = work_of_factors(solver, matrix) + accuracy%ahead*work_of_solution(solver, matrix)
-    serve_on = growth*factors%rate*accuracy%ahead <= afresh &
+    serves = growth*factors%rate*accuracy%ahead <= afresh &
                .and. factors%rate*factors%digits <= factors%work
   end function serve_on
 
@@ -178,8 +180,9 @@ contains
   pure subroutine forget_factors(recycler)
     type(recycler_t), intent(inout) :: recycler
 
-    if (.not. recycler%changed .and. recycler%now%is_there) &
+    if (.not. recycler%changed .and. recycler%now%is_there) then
       call move_alloc(recycler%now%val, recycler%accepted%val)
+    end if
     recycler%changed = .true.
     if (allocated(recycler%now%val)) deallocate (recycler%now%val)
     recycler%now%is_there = .false.
