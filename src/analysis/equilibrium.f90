@@ -8,7 +8,7 @@ module mpm_equilibrium
   use mpm_interruption, only: received_signal
   use mpm_kinds, only: dp
   use mpm_kinematics, only: find_largest_stretch
-  use mpm_linear_method, only: method_automatic
+  use mpm_linear_method, only: chosen_method, method_automatic
   use mpm_linear_solver, only: solver_memory, solver_not_finite, solver_ok
   use mpm_residual_norm, only: force_scale, node_of_largest, relative
   use mpm_system, only: body_t, evaluate, evaluate_force, evaluation_inverted, evaluation_ok, system_t
@@ -43,6 +43,7 @@ module mpm_equilibrium
     logical  :: prediction = .true.   !! start from the last increment where that is near
     real(dp) :: max_stretch = 2.0_dp  !! largest |ln(principal stretch)| in one increment [-]
     integer  :: linear_solver = method_automatic !! method_*
+    integer  :: least_recycled = huge(1) !! unknowns from which automatic means recycling
   end type newton_settings_t
 
   !> What Newton's method did in one attempt at an increment.
@@ -246,7 +247,8 @@ contains
                          iteration > 1 .or. newton%moved), report%residual(iteration - 1), &
                          report%n_plastic > 0, settings%tolerance)
     call solve_tangent(newton%x, system, rhs, newton%forcing%accuracy, &
-                       settings%linear_solver, outcome)
+                       chosen_method(settings%linear_solver, system%dofs%n, &
+                                     settings%least_recycled), outcome)
     if (system%dofs%n > 0) report%rcond = min(report%rcond, system%solver%rcond)
     report%seconds(3:5, iteration) = report%seconds(3:5, iteration) &
                                      + [clock(2) - clock(1), system%recycler%seconds]

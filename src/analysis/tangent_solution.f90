@@ -1,7 +1,7 @@
 !> The linear system of a correction: how accurately it is solved, and by which method.
 module mpm_tangent_solution
   use mpm_kinds, only: dp
-  use mpm_linear_method, only: chosen_method, method_recycled
+  use mpm_linear_method, only: method_recycled
   use mpm_linear_solver, only: factorize, solve, solver_ok
   use mpm_recycled_solver, only: accuracy_t, forget_factors, renew_factors, solve_recycled
   use mpm_system, only: system_t
@@ -74,7 +74,7 @@ contains
     real(dp) :: clock(3)
 
     associate (recycler => system%recycler)
-      if (chosen_method(method, system%dofs%n) == method_recycled .and. system%dofs%n > 0) then
+      if (method == method_recycled .and. system%dofs%n > 0) then
         call solve_recycled(recycler, x, system%solver, system%tangent, rhs, accuracy, outcome)
         return
       end if

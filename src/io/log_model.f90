@@ -2,7 +2,7 @@
 module mpm_log_model
   use mpm_initial_stress, only: initial_stress_t
   use mpm_kinds, only: dp
-  use mpm_linear_method, only: least_recycled, method_automatic, method_name
+  use mpm_linear_method, only: method_automatic, method_name
   use mpm_material, only: law_von_mises, material_t
   use mpm_mesh, only: face_set_t, mesh_t
   use mpm_mesh_motion, only: mesh_motion_t
@@ -127,7 +127,7 @@ contains
            //integer_text(step%newton%max_backtracks)//" backtracks, prediction " &
            //trim(merge("on ", "off", step%newton%prediction))//", stretch at most " &
            //real_text(step%newton%max_stretch)//line_end &
-           //"    linear solver: "//solver_text(step%newton%linear_solver)//line_end
+           //"    linear solver: "//solver_text(step%newton%linear_solver, step%newton%least_recycled)//line_end
     if (step%newton%eigenvalues) text = text//"    eigenvalues of the tangent: " &
       & //"in every increment"//line_end
     if (allocated(step%constraint)) then
@@ -140,13 +140,15 @@ contains
   end function step_text
 
   !> How the systems of the corrections are solved.
-  pure function solver_text(method) result(text)
+  pure function solver_text(method, least) result(text)
     integer, intent(in) :: method !! method_*
+    integer, intent(in) :: least  !! unknowns from which automatic means recycling
     character(:), allocatable :: text
 
     select case (method)
     case (method_automatic)
-      text = "RECYCLED from "//integer_text(least_recycled)//" unknowns on, DIRECT below"
+      text = "DIRECT"
+      if (least < huge(least)) text = "RECYCLED from "//integer_text(least)//" unknowns on, DIRECT below"
     case default
       text = method_name(method)
     end select

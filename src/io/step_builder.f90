@@ -9,7 +9,7 @@ module mpm_step_builder
   use mpm_external_force, only: load_t
   use mpm_increments, only: schedule_settings_t
   use mpm_kinds, only: dp
-  use mpm_linear_method, only: method_mumps, method_name, method_of_name
+  use mpm_linear_method, only: least_recycled, method_mumps, method_name, method_of_name
   use mpm_linear_solver, only: has_mumps
   use mpm_load_builder, only: add_loads, begin_load_step, close_load_step, load_state_t
   use mpm_model, only: history_request_t, model_t, step_t
@@ -100,6 +100,7 @@ contains
       call close_load_step(step%load, loads, step%schedule%period, model%amplitude)
       if (step%geostatic) call apply_at_once(step%load)
     end associate
+    step%newton%least_recycled = least_recycled(model%mesh%n_dim, step%schedule%direct)
     call build_requests(step, model, deck, context, range, time)
     call check_interval(step, deck, context)
     time = time + step%schedule%period
