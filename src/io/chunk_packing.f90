@@ -34,7 +34,7 @@ contains
     integer(c_int8_t), allocatable :: shuffled(:, :)
     character(80) :: reason
     integer(ip) :: room
-    integer :: i, k, status
+    integer :: status
 
     n_bytes = 0_ip
     room = int(n_values, ip)*int(bytes_of_value, ip)
@@ -44,13 +44,27 @@ contains
     allocate (packed((room + 3_ip)/4_ip), stat=status, errmsg=reason)
     if (status /= 0) return
     call c_f_pointer(values, plain, [bytes_of_value, n_values])
-    do k = 1, bytes_of_value
-      do i = 1, n_values
-        shuffled(i, k) = plain(k, i)
-      end do
-    end do
+    call shuffle(shuffled, plain, bytes_of_value, n_values)
     n_bytes = int(isal_deflate(shuffled, int(size(shuffled, kind=ip), c_long), packed, &
                                int(room, c_long)), ip)
   end subroutine pack_chunk
+
+  !> Puts the bytes of the same rank side by side, some values at a time, which then stay in the
+  !! first-level cache.
+  pure subroutine shuffle(shuffled, plain, bytes_of_value, n_values)
+    integer, intent(in) :: bytes_of_value, n_values
+    integer(c_int8_t), intent(out) :: shuffled(n_values, bytes_of_value)
+    integer(c_int8_t), intent(in)  :: plain(bytes_of_value, n_values)
+    integer, parameter :: at_once = 2048 !! values
+    integer :: first, i, k
+
+    do first = 1, n_values, at_once
+      do k = 1, bytes_of_value
+        do i = first, min(first + at_once - 1, n_values)
+          shuffled(i, k) = plain(k, i)
+        end do
+      end do
+    end do
+  end subroutine shuffle
 
 end module mpm_chunk_packing

@@ -233,6 +233,7 @@ contains
     type(build_context_t), intent(inout) :: context !! takes the error
     integer, intent(in) :: i_card       !! *CONTROLS
     type(step_t) :: defaults
+    logical :: is_there
 
     associate (card => deck%card(i_card), newton => step%newton)
       if (has_parameter(card, "RESET")) newton = defaults%newton
@@ -245,7 +246,8 @@ contains
       newton%linear_solver = method_of_name(parameter_choice(card, "LINEAR SOLVER", &
                                                              method_name(newton%linear_solver)))
       newton%eigenvalues = newton%eigenvalues .or. has_parameter(card, "EIGENVALUES")
-      if (newton%linear_solver == method_mumps .and. .not. has_mumps() &
+      is_there = has_mumps()
+      if (newton%linear_solver == method_mumps .and. .not. is_there &
           .and. has_parameter(card, "LINEAR SOLVER")) then
         call fault(context, deck, at_parameter(i_card, "LINEAR SOLVER"), &
                    "this program was built without MUMPS: expected DIRECT or RECYCLED")
