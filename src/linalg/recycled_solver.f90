@@ -168,6 +168,7 @@ contains
     integer, intent(out) :: outcome                !! solver_*
 
     call forget_factors(recycler)
+    recycler%gmres = gmres_t() ! the factors need the room
     recycler%is_new = .true.
     call factorize(solver, matrix, outcome)
     if (outcome /= solver_ok .or. matrix%nnz > int(huge(1), ip)) return
