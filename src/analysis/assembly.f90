@@ -156,7 +156,7 @@ contains
     type(element_sums_t), intent(in) :: sums
     real(dp) :: stiffness(n_dim, n_dim + 1, n_dim, n_dim + 1), coupling(n_dim, n_dim + 1)
     real(dp) :: divergence(n_dim, n_eq/n_dim), pressed(n_dim, n_eq/n_dim)
-    integer :: a, b, e, i, k, m, n_active, node(n_dim + 1)
+    integer :: a, e, m, n_active, node(n_dim + 1)
 
     block = 0.0_dp
     divergence = 0.0_dp
@@ -178,20 +178,27 @@ contains
           pressed(:, node(a)) = pressed(:, node(a)) + coupling(:, a)
         end do
       end if
-      do b = 1, n_dim + 1
-        do k = 1, n_dim
-          do a = 1, n_dim + 1
-            do i = 1, n_dim
-              associate (entry => block((node(a) - 1)*n_dim + i, (node(b) - 1)*n_dim + k))
-                entry = entry + stiffness(i, a, k, b)
-              end associate
-            end do
-          end do
-        end do
-      end do
+      call add_stiffness(block, stiffness, node, n_dim, n_eq)
     end do
     if (n_active > 1) call add_product(block, pressed, divergence, n_eq)
   end subroutine sum_elements
+
+  !> Adds the tangent of an element to that of its patch.
+  pure subroutine add_stiffness(block, stiffness, node, n_dim, n_eq)
+    integer, intent(in)     :: n_dim, n_eq
+    real(dp), intent(inout) :: block(n_dim, n_eq/n_dim, n_dim, n_eq/n_dim)         !! (i, a, k, b)
+    real(dp), intent(in)    :: stiffness(n_dim, n_dim + 1, n_dim, n_dim + 1) !! (i, a, k, b)
+    integer, intent(in)     :: node(n_dim + 1) !! numbers of its nodes within the patch
+    integer :: a, b, k
+
+    do b = 1, n_dim + 1
+      do k = 1, n_dim
+        do a = 1, n_dim + 1
+          block(:, node(a), k, node(b)) = block(:, node(a), k, node(b)) + stiffness(:, a, k, b)
+        end do
+      end do
+    end do
+  end subroutine add_stiffness
 
   !> sum v [grad S]^T a [grad S] with a_ijkl = c_ijkl/Jbar + delta_ik sigma_jl. Source: theory.md (12).
   pure subroutine element_tangent(stiffness, grad_shape, moduli, stress, n_dim)
@@ -200,36 +207,55 @@ contains
     real(dp), intent(in)  :: grad_shape(n_dim, n_dim + 1) !! current gradients
     real(dp), intent(in)  :: moduli(6, 6)                 !! sum v c/Jbar
     real(dp), intent(in)  :: stress(6)                    !! sum v sigma
-    real(dp) :: column(6), traction(n_dim), initial
-    integer :: a, b, i, j, k
+    real(dp) :: column(6)
+    integer :: b, j, k
 
     do b = 1, n_dim + 1
-      do i = 1, n_dim
-        traction(i) = 0.0_dp
-        do j = 1, n_dim
-          traction(i) = traction(i) + stress(voigt_index(i, j))*grad_shape(j, b)
-        end do
-      end do
       do k = 1, n_dim
         column = 0.0_dp
         do j = 1, n_dim
           column = column + moduli(:, voigt_index(k, j))*grad_shape(j, b)
         end do
-        do a = 1, n_dim + 1
-          initial = 0.0_dp
-          do i = 1, n_dim
-            stiffness(i, a, k, b) = 0.0_dp
-            do j = 1, n_dim
-              stiffness(i, a, k, b) = stiffness(i, a, k, b) &
-                                      + column(voigt_index(i, j))*grad_shape(j, a)
-            end do
-            initial = initial + grad_shape(i, a)*traction(i)
-          end do
-          stiffness(k, a, k, b) = stiffness(k, a, k, b) + initial
+        call spread_stress(stiffness(:, :, k, b), column, grad_shape, n_dim, n_dim + 1)
+      end do
+      call add_initial(stiffness(:, :, :, b), stress, grad_shape, b, n_dim)
+    end do
+  end subroutine element_tangent
+
+  !> Nodal forces of a symmetric stress.
+  pure subroutine spread_stress(force, stress, grad_shape, n_dim, n_node)
+    integer, intent(in)   :: n_dim, n_node
+    real(dp), intent(out) :: force(n_dim, n_node)
+    real(dp), intent(in)  :: stress(6)                 !! 11, 22, 33, 12, 23, 13
+    real(dp), intent(in)  :: grad_shape(n_dim, n_node) !! current gradients
+    integer :: a, i, j
+
+    do a = 1, n_node
+      do i = 1, n_dim
+        force(i, a) = 0.0_dp
+        do j = 1, n_dim
+          force(i, a) = force(i, a) + stress(voigt_index(i, j))*grad_shape(j, a)
         end do
       end do
     end do
-  end subroutine element_tangent
+  end subroutine spread_stress
+
+  !> Adds what the stress that is there contributes to the columns of node b.
+  pure subroutine add_initial(stiffness, stress, grad_shape, b, n_dim)
+    integer, intent(in)     :: b, n_dim
+    real(dp), intent(inout) :: stiffness(n_dim, n_dim + 1, n_dim) !! (i, a, k)
+    real(dp), intent(in)    :: stress(6)                          !! sum v sigma
+    real(dp), intent(in)    :: grad_shape(n_dim, n_dim + 1)       !! current gradients
+    real(dp) :: traction(n_dim)
+    integer :: a, k
+
+    call spread_stress(traction, stress, grad_shape(:, b), n_dim, 1)
+    do k = 1, n_dim
+      do a = 1, n_dim + 1
+        stiffness(k, a, k) = stiffness(k, a, k) + dot_product(grad_shape(:, a), traction)
+      end do
+    end do
+  end subroutine add_initial
 
   !> Takes away the element's own share (G^T Q) tr g_e and gives [grad S]^T q with
   !! sum v q = (sum v c/Jbar : I + 2 sum v sigma)/n. Source: theory.md (13), (14a).
@@ -241,28 +267,17 @@ contains
     real(dp), intent(in)    :: moduli(6, 6)                 !! sum v c/Jbar
     real(dp), intent(in)    :: stress(6)                    !! sum v sigma
     real(dp) :: q(6)
-    integer :: a, b, i, j, k
+    integer :: b, j, k
 
     q = 2.0_dp*stress
     do j = 1, n_dim
       q = q + moduli(:, j)
     end do
     q = q/real(n_dim, dp)
-    do a = 1, n_dim + 1
-      do i = 1, n_dim
-        coupling(i, a) = 0.0_dp
-        do j = 1, n_dim
-          coupling(i, a) = coupling(i, a) + q(voigt_index(i, j))*grad_shape(j, a)
-        end do
-      end do
-    end do
+    call spread_stress(coupling, q, grad_shape, n_dim, n_dim + 1)
     do b = 1, n_dim + 1
       do k = 1, n_dim
-        do a = 1, n_dim + 1
-          do i = 1, n_dim
-            stiffness(i, a, k, b) = stiffness(i, a, k, b) - coupling(i, a)*grad_shape(k, b)
-          end do
-        end do
+        stiffness(:, :, k, b) = stiffness(:, :, k, b) - coupling*grad_shape(k, b)
       end do
     end do
   end subroutine couple

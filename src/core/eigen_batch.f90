@@ -13,6 +13,8 @@ module mpm_eigen_batch
   integer, parameter :: batch_size = 32 !! tensors of a batch: what stays in the first-level cache
 
   integer, parameter  :: max_sweeps = 12
+  integer, parameter  :: plane(5, 3) = reshape([1, 2, 1, 3, 2, 1, 3, 3, 1, 2, 2, 3, 2, 1, 3], [5, 3])
+    !! p, q and the places of pq, pr, qr among the entries 12, 23, 13
   real(dp), parameter :: negligible = 3.0e-19_dp !! off-diagonal entry over the largest entries [-]
   real(dp), parameter :: smallest = 1.0e-140_dp  !! entry whose square is still a normal number
   real(dp), parameter :: series_reach = 0.4_dp   !! argument up to which the series are used
@@ -49,30 +51,27 @@ contains
     do sweep = 1, max_sweeps
       if (all(abs(off(:, 1)) <= limit .and. abs(off(:, 2)) <= limit .and. abs(off(:, 3)) <= limit)) &
         exit
-      call rotate(value(:, 1), value(:, 2), off(:, 1), off(:, 3), off(:, 2), &
-                  vector(:, :, 1), vector(:, :, 2), limit)
-      call rotate(value(:, 1), value(:, 3), off(:, 3), off(:, 1), off(:, 2), &
-                  vector(:, :, 1), vector(:, :, 3), limit)
-      call rotate(value(:, 2), value(:, 3), off(:, 2), off(:, 1), off(:, 3), &
-                  vector(:, :, 2), vector(:, :, 3), limit)
+      do i = 1, 3
+        call rotate(value, off, vector, plane(:, i), limit)
+      end do
     end do
   end subroutine eigen_of_batch
 
   !> One rotation in the plane (p, q); r is the third index. Tensors whose entry (p, q) is
   !! negligible stay as they are, to the last bit.
-  pure subroutine rotate(app, aqq, apq, apr, aqr, vector_p, vector_q, limit)
-    real(dp), intent(inout) :: app(batch_size), aqq(batch_size) !! diagonal
-    real(dp), intent(inout) :: apq(batch_size)                  !! becomes zero
-    real(dp), intent(inout) :: apr(batch_size), aqr(batch_size) !! the other two entries
-    real(dp), intent(inout) :: vector_p(batch_size, 3), vector_q(batch_size, 3) !! rotated with them
-    real(dp), intent(in)    :: limit(batch_size)                !! what is negligible
+  pure subroutine rotate(value, off, vector, plane, limit)
+    real(dp), intent(inout) :: value(batch_size, 3)     !! diagonal
+    real(dp), intent(inout) :: off(batch_size, 3)       !! entries 12, 23, 13; that of the plane becomes zero
+    real(dp), intent(inout) :: vector(batch_size, 3, 3) !! rotated with them
+    integer, intent(in)     :: plane(5)                 !! p, q, and the places of pq, pr, qr in off
+    real(dp), intent(in)    :: limit(batch_size)        !! what is negligible
     real(dp) :: across, d, p, q, root, s, signed, t, tau, theta, w
     integer  :: l
 
     !$omp simd private(across, d, p, q, root, s, signed, t, tau, theta, w)
     do l = 1, batch_size
-      across = merge(apq(l), 0.0_dp, abs(apq(l)) > limit(l))
-      theta = 0.5_dp*(aqq(l) - app(l))
+      across = merge(off(l, plane(3)), 0.0_dp, abs(off(l, plane(3))) > limit(l))
+      theta = 0.5_dp*(value(l, plane(2)) - value(l, plane(1)))
       root = sqrt(theta*theta + across*across)
       root = merge(root, 1.0_dp, abs(across) > 0.0_dp)
       d = abs(theta) + root
@@ -83,25 +82,25 @@ contains
       tau = signed/(w*(w + d))
       s = tau*(w + d)
       tau = tau*w
-      app(l) = app(l) - t*across
-      aqq(l) = aqq(l) + t*across
-      apq(l) = apq(l) - across
-      p = apr(l)
-      q = aqr(l)
-      apr(l) = p - s*(q + tau*p)
-      aqr(l) = q + s*(p - tau*q)
-      p = vector_p(l, 1)
-      q = vector_q(l, 1)
-      vector_p(l, 1) = p - s*(q + tau*p)
-      vector_q(l, 1) = q + s*(p - tau*q)
-      p = vector_p(l, 2)
-      q = vector_q(l, 2)
-      vector_p(l, 2) = p - s*(q + tau*p)
-      vector_q(l, 2) = q + s*(p - tau*q)
-      p = vector_p(l, 3)
-      q = vector_q(l, 3)
-      vector_p(l, 3) = p - s*(q + tau*p)
-      vector_q(l, 3) = q + s*(p - tau*q)
+      value(l, plane(1)) = value(l, plane(1)) - t*across
+      value(l, plane(2)) = value(l, plane(2)) + t*across
+      off(l, plane(3)) = off(l, plane(3)) - across
+      p = off(l, plane(4))
+      q = off(l, plane(5))
+      off(l, plane(4)) = p - s*(q + tau*p)
+      off(l, plane(5)) = q + s*(p - tau*q)
+      p = vector(l, 1, plane(1))
+      q = vector(l, 1, plane(2))
+      vector(l, 1, plane(1)) = p - s*(q + tau*p)
+      vector(l, 1, plane(2)) = q + s*(p - tau*q)
+      p = vector(l, 2, plane(1))
+      q = vector(l, 2, plane(2))
+      vector(l, 2, plane(1)) = p - s*(q + tau*p)
+      vector(l, 2, plane(2)) = q + s*(p - tau*q)
+      p = vector(l, 3, plane(1))
+      q = vector(l, 3, plane(2))
+      vector(l, 3, plane(1)) = p - s*(q + tau*p)
+      vector(l, 3, plane(2)) = q + s*(p - tau*q)
     end do
   end subroutine rotate
 
