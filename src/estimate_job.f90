@@ -71,7 +71,7 @@ contains
   !! each other count as busy.
   subroutine note_seconds(estimate, system, body)
     type(run_estimate_t), intent(inout) :: estimate
-    type(system_t), intent(inout) :: system !! analysed; its trial state is overwritten
+    type(system_t), intent(inout) :: system !! analysed; evaluated
     type(body_t), intent(in) :: body
     real(dp) :: clock(3), rate
     integer  :: n_threads, outcome

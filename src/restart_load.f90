@@ -7,7 +7,7 @@ module mpm_restart_load
   use mpm_expectations, only: collect_expectations, verdict_t
   use mpm_increments, only: resume_step
   use mpm_kinds, only: dp
-  use mpm_material_points, only: group_points, hand_over, open_trial
+  use mpm_material_points, only: group_points, hand_over
   use mpm_mesh, only: build_geometry
   use mpm_model, only: model_t
   use mpm_model_signature, only: check_model
@@ -111,7 +111,6 @@ contains
       call hand_over(analysis%kept%points, body%points)
       call group_points(body%points, body%mesh%n_el)
       body%surface = analysis%kept%surface
-      call open_trial(analysis%system%trial, body%points%state)
     end associate
     analysis%system%u_last = state%delta_u
     analysis%u_start = analysis%kept%u_start

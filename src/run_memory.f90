@@ -115,14 +115,11 @@ contains
   pure function memory_of_model(model) result(need)
     type(model_t), intent(in) :: model
     type(memory_need_t) :: need
-    integer, parameter :: trial = 20, start = 1 ! reals of a trial state; displacements kept
     integer, parameter :: of_output = 120 ! bytes: a tensor field, as it is and as it is stored
 
     need%program = program
     associate (n => model%points%n, n_dim => model%mesh%n_dim, n_el => model%mesh%n_el)
-      need%points = real(bytes_of_points(n, n_dim), dp) &
-                    + 8.0_dp*real(trial + start*n_dim, dp)*real(n, dp)
-      need%points = left_over*need%points
+      need%points = left_over*real(bytes_of_points(n, n_dim), dp)
       need%mesh = real(copies, dp)*bytes_of_mesh(model) &
                   + 8.0_dp*real(full_tensors + n_dim*(n_dim + 1) + sums, dp)*real(n_el, dp)
       need%mesh = left_over*need%mesh

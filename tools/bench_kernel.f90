@@ -8,7 +8,6 @@ program bench_kernel
   use kernel_body, only: body_t, make_body, update_by_point
   use mpm_constitutive_update, only: allocate_sums, element_sums_t, update_points
   use mpm_kinds, only: dp, ip
-  use mpm_material_points, only: open_trial, trial_state_t
   implicit none
 
   integer, parameter :: n_cells(4) = [3, 5, 11, 25]  !! along an edge, of six tetrahedra each
@@ -60,19 +59,17 @@ contains
     integer, intent(in) :: n_cells   !! along an edge
     type(body_t) :: body
     type(element_sums_t) :: batched, pointwise
-    type(trial_state_t)  :: trial
     type(cost_t) :: cost
     real(dp) :: difference
 
     call make_body(body, n_cells, strength)
-    call open_trial(trial, body%points%state)
     call allocate_sums(batched, body%mesh%n_el)
     call allocate_sums(pointwise, body%mesh%n_el)
-    call time_updates(cost, trial, batched, body, way_residual)
+    call time_updates(cost, batched, body, way_residual)
     call write_line(kind, "residual", cost, body%points%n, batched%n_plastic)
-    call time_updates(cost, trial, batched, body, way_batched)
+    call time_updates(cost, batched, body, way_batched)
     call write_line(kind, "batched", cost, body%points%n, batched%n_plastic)
-    call time_updates(cost, trial, pointwise, body, way_pointwise)
+    call time_updates(cost, pointwise, body, way_pointwise)
     call write_line(kind, "pointwise", cost, body%points%n, pointwise%n_plastic)
     difference = maxval(abs(batched%stress - pointwise%stress))/maxval(abs(pointwise%stress))
     difference = max(difference, maxval(abs(batched%moduli - pointwise%moduli)) &
@@ -81,9 +78,8 @@ contains
   end subroutine measure
 
   !> Times batches of updates from the same converged state; the first one warms up.
-  subroutine time_updates(cost, trial, sums, body, way)
+  subroutine time_updates(cost, sums, body, way)
     type(cost_t), intent(out) :: cost            !! of the best batch
-    type(trial_state_t), intent(inout) :: trial  !! overwritten
     type(element_sums_t), intent(inout) :: sums  !! overwritten
     type(body_t), intent(in) :: body             !! converged state, increment
     integer, intent(in) :: way                   !! way_*
@@ -98,9 +94,9 @@ contains
       call system_clock(ticks(1))
       do k = 1, n
         if (way == way_pointwise) then
-          call update_by_point(trial, sums, body)
+          call update_by_point(sums, body)
         else
-          call update_points(trial, sums, body%points, body%material, body%kinematics, &
+          call update_points(sums, body%points, body%material, body%kinematics, &
                              body%element, with_moduli=way == way_batched)
         end if
       end do

@@ -1,11 +1,11 @@
 !> A box of material points before the stress update of an increment, for bench_kernel.
 module kernel_body
-  use mpm_constitutive_update, only: allocate_sums, element_sums_t, update_points
+  use mpm_constitutive_update, only: element_sums_t
   use mpm_error, only: error_t
   use mpm_kinds, only: dp
   use mpm_kinematics, only: allocate_kinematics, kinematics_t
   use mpm_material, only: law_von_mises, material_t
-  use mpm_material_points, only: generate_points, open_trial, points_t, trial_state_t
+  use mpm_material_points, only: generate_points, points_t
   use mpm_mesh, only: mesh_t
   use mpm_mesh_generator, only: box_settings_t, generate_box, graded_planes
   use mpm_parent_mesh, only: parent_mesh_t
@@ -35,10 +35,9 @@ contains
     type(body_t), intent(out) :: body !! complete
     integer, intent(in)  :: n_cells   !! along an edge, six tetrahedra each
     real(dp), intent(in) :: strength  !! sqrt(3 J2) at yield [force/length^2]
-    type(element_sums_t) :: sums
-    type(trial_state_t)  :: trial
+    type(point_response_t) :: response
     type(error_t), allocatable :: error
-    integer :: e
+    integer :: e, p
 
     call make_mesh(body%mesh, n_cells)
     body%element = [(e, e=1, body%mesh%n_el)]
@@ -55,12 +54,13 @@ contains
       call draw(body%kinematics%disp_grad_bar(:, :, e), e)
       body%kinematics%delta_j_bar_m1(e) = det_m1(body%kinematics%disp_grad_bar(:, :, e))
     end do
-    call open_trial(trial, body%points%state)
-    call allocate_sums(sums, body%mesh%n_el)
-    call update_points(trial, sums, body%points, body%material, body%kinematics, body%element, &
-                       .true.)
-    body%points%state%left_cauchy_green_e_m1 = trial%left_cauchy_green_e_m1
-    body%points%state%hardening = trial%hardening
+    do p = 1, body%points%n
+      call update_stress(response, body%material(1), &
+                         body%kinematics%disp_grad_bar(:, :, body%points%element(p)), &
+                         body%points%state%left_cauchy_green_e_m1(:, p), 0.0_dp)
+      body%points%state%left_cauchy_green_e_m1(:, p) = response%left_cauchy_green_e_m1
+      body%points%state%hardening(1, p) = response%plastic_strain
+    end do
   end subroutine make_body
 
   !> Linear tetrahedra with edges of one.
@@ -94,8 +94,7 @@ contains
   end subroutine draw
 
   !> The stress update of all points with the checked update of one, element by element.
-  subroutine update_by_point(trial, sums, body)
-    type(trial_state_t), intent(inout)  :: trial !! allocated for the points
+  subroutine update_by_point(sums, body)
     type(element_sums_t), intent(inout) :: sums  !! stress, moduli, points that flow
     type(body_t), intent(in) :: body             !! converged state, increment
     type(point_response_t) :: response
@@ -119,8 +118,6 @@ contains
           factor = points%volume(p)/points%state%jacobian_bar(p)
           sums%stress(:, e) = sums%stress(:, e) + factor*response%kirchhoff
           sums%moduli(:, :, e) = sums%moduli(:, :, e) + factor*response%moduli
-          trial%left_cauchy_green_e_m1(:, p) = response%left_cauchy_green_e_m1
-          trial%hardening(1, p) = response%plastic_strain
         end do
       end do
       !$omp end parallel do

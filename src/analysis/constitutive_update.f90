@@ -3,7 +3,7 @@ module mpm_constitutive_update
   use mpm_kinds, only: dp
   use mpm_kinematics, only: kinematics_t
   use mpm_material, only: material_t
-  use mpm_material_points, only: points_t, trial_state_t
+  use mpm_material_points, only: points_t
   use mpm_stress_batch, only: batch_size, put_point, set_material, stress_batch_t, update_batch, &
     voigt_pair
   implicit none
@@ -45,12 +45,12 @@ contains
     allocate (sums%plastic_in(n_el), sums%failed_in(n_el), source=0)
   end subroutine allocate_sums
 
-  !> Trial state of all points in the active elements and the element sums.
+  !> Element sums of the stresses and moduli that the points would have. Their states are not kept:
+  !! they follow from the kinematics once more when the increment is accepted.
   !! v sigma = (v_n/Jbar_n) tau because both v and Jbar grow by det dFbar. Every point and every sum
   !! is independent of the others: the result does not depend on the number of threads.
   !! Source: theory.md (6)-(12).
-  subroutine update_points(trial, sums, points, materials, kinematics, element, with_moduli)
-    type(trial_state_t), intent(inout)  :: trial        !! allocated for the points
+  subroutine update_points(sums, points, materials, kinematics, element, with_moduli)
     type(element_sums_t), intent(inout) :: sums
     type(points_t), intent(in)          :: points       !! converged, grouped by element
     type(material_t), intent(in)        :: materials(:)
@@ -62,7 +62,7 @@ contains
     sums%has_moduli = with_moduli
     !$omp parallel do default(shared) schedule(dynamic)
     do first = 1, size(element), chunk_size
-      call update_chunk(trial, sums, points, materials, kinematics, &
+      call update_chunk(sums, points, materials, kinematics, &
                         element(first:min(first + chunk_size - 1, size(element))))
     end do
     !$omp end parallel do
@@ -75,8 +75,7 @@ contains
   end subroutine update_points
 
   !> The points of some elements, batch by batch in the order of points%order.
-  pure subroutine update_chunk(trial, sums, points, materials, kinematics, element)
-    type(trial_state_t), intent(inout)  :: trial
+  pure subroutine update_chunk(sums, points, materials, kinematics, element)
     type(element_sums_t), intent(inout) :: sums
     type(points_t), intent(in)          :: points
     type(material_t), intent(in)        :: materials(:)
@@ -97,17 +96,16 @@ contains
                        points%state%left_cauchy_green_e_m1(:, p), points%state%hardening(1, p))
         call set_material(passage%batch, passage%n, points%material(p), &
                           materials(points%material(p)))
-        if (passage%n == batch_size) call pass(passage, trial, sums, points, materials)
+        if (passage%n == batch_size) call pass(passage, sums, points, materials)
       end do
     end do
-    if (passage%n > 0) call pass(passage, trial, sums, points, materials)
+    if (passage%n > 0) call pass(passage, sums, points, materials)
     call close_sum(passage, sums)
   end subroutine update_chunk
 
-  !> Updates a batch, notes the trial states and adds to the sums, point by point.
-  pure subroutine pass(passage, trial, sums, points, materials)
+  !> Updates a batch and adds to the sums, point by point.
+  pure subroutine pass(passage, sums, points, materials)
     type(passage_t), intent(inout)      :: passage !! out: batch empty
-    type(trial_state_t), intent(inout)  :: trial
     type(element_sums_t), intent(inout) :: sums
     type(points_t), intent(in)          :: points
     type(material_t), intent(in)        :: materials(:)
@@ -134,8 +132,6 @@ contains
         factor = points%volume(p)/points%state%jacobian_bar(p)
         passage%stress = passage%stress + factor*batch%kirchhoff(l, :)
         if (sums%has_moduli) passage%moduli = passage%moduli + factor*batch%moduli(l, :)
-        trial%left_cauchy_green_e_m1(:, p) = batch%cg_e_m1(l, :)
-        trial%hardening(1, p) = batch%plastic_strain(l)
       end do
     end associate
     passage%n = 0

@@ -82,7 +82,7 @@ module mpm_equilibrium
 
 contains
 
-  !> Newton's method with backtracking. On success system%u, system%trial and system%f_int hold
+  !> Newton's method with backtracking. On success system%u, system%kinematics and system%f_int hold
   !! the solution; on failure nothing converged has changed. Source: theory.md (15).
   subroutine find_equilibrium(system, report, body, settings)
     type(system_t), intent(inout)       :: system  !! dofs, pattern, f_ext of this increment are set

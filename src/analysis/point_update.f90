@@ -1,10 +1,11 @@
-!> End of an increment: the trial state is accepted and the points move.
+!> End of an increment: the points move and take their new states.
 module mpm_point_update
   use mpm_kinds, only: dp
+  use mpm_kinematics, only: kinematics_t
   use mpm_material, only: material_t
   use mpm_material_points, only: points_t
   use mpm_mesh, only: mesh_t
-  use mpm_stress_batch, only: batch_size, set_material, strain_of_batch, stress_batch_t
+  use mpm_stress_batch, only: accept_batch, batch_size, put_point, set_material, stress_batch_t
   use mpm_surface_points, only: move_surface_points
   use mpm_system, only: body_t, system_t
   use mpm_tensor, only: identity
@@ -14,8 +15,8 @@ module mpm_point_update
 
 contains
 
-  !> Positions, displacements, F = dF F, v = det(dFbar) v_n, and the trial state becomes the
-  !! converged one, now with strain and stress. Source: theory.md (7), (9), (10), (16).
+  !> Positions, displacements, F = dF F, v = det(dFbar) v_n, and the states, which the kinematics of
+  !! the solution give once more. Source: theory.md (6)-(10), (16).
   subroutine accept_points(body, system)
     type(body_t), intent(inout) :: body      !! points are updated, the mesh is not
     type(system_t), intent(in)  :: system    !! converged
@@ -25,7 +26,7 @@ contains
     do first = 1, size(body%points%order), batch_size
       last = min(first + batch_size - 1, size(body%points%order))
       call move_points(body%points, body%mesh, system, first, last)
-      call accept_states(body%points, body%material, system, first, last)
+      call accept_states(body%points, body%material, system%kinematics, first, last)
     end do
     !$omp end parallel do
     call move_surface_points(body%surface, body%mesh, system%u)
@@ -52,12 +53,12 @@ contains
     end do
   end subroutine move_points
 
-  !> Trial states of a batch of points, and the strains and stresses that belong to them.
-  pure subroutine accept_states(points, materials, system, first, last)
-    type(points_t), intent(inout) :: points
-    type(material_t), intent(in)  :: materials(:)
-    type(system_t), intent(in)    :: system      !! converged
-    integer, intent(in)           :: first, last !! range of points%order, at most batch_size
+  !> The states that the increment ends in, with the strains and stresses that belong to them.
+  pure subroutine accept_states(points, materials, kinematics, first, last)
+    type(points_t), intent(inout)  :: points
+    type(material_t), intent(in)   :: materials(:)
+    type(kinematics_t), intent(in) :: kinematics  !! of the last evaluation
+    integer, intent(in)            :: first, last !! range of points%order, at most batch_size
     type(stress_batch_t) :: batch
     real(dp) :: strain(batch_size, 6)
     integer  :: i, l, p
@@ -65,19 +66,19 @@ contains
     do i = first, last
       p = points%order(i)
       l = i - first + 1
-      batch%cg_e_m1(l, :) = system%trial%left_cauchy_green_e_m1(:, p)
-      batch%plastic_strain(l) = system%trial%hardening(1, p)
+      call put_point(batch, l, kinematics%disp_grad_bar(:, :, points%element(p)), &
+                     points%state%left_cauchy_green_e_m1(:, p), points%state%hardening(1, p))
       call set_material(batch, l, points%material(p), materials(points%material(p)))
     end do
-    call strain_of_batch(strain, batch)
+    call accept_batch(strain, batch, materials)
     associate (state => points%state)
       do i = first, last
         p = points%order(i)
         l = i - first + 1
-        state%left_cauchy_green_e_m1(:, p) = system%trial%left_cauchy_green_e_m1(:, p)
-        state%hardening(:, p) = system%trial%hardening(:, p)
+        state%left_cauchy_green_e_m1(:, p) = batch%cg_e_m1(l, :)
+        state%hardening(1, p) = batch%plastic_strain(l)
         state%jacobian_bar(p) = state%jacobian_bar(p) &
-                                *(1.0_dp + system%kinematics%delta_j_bar_m1(points%element(p)))
+                                *(1.0_dp + kinematics%delta_j_bar_m1(points%element(p)))
         state%strain_e(:, p) = strain(l, :)
         state%cauchy(:, p) = batch%kirchhoff(l, :)/state%jacobian_bar(p)
       end do

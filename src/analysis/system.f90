@@ -1,4 +1,4 @@
-!> Everything that one increment needs beside the model: unknowns, trial state, tangent.
+!> Everything that one increment needs beside the model: unknowns, kinematics, sums, tangent.
 module mpm_system
   use mpm_assembly, only: internal_force
   use mpm_constitutive_update, only: allocate_sums, element_sums_t, update_points
@@ -10,7 +10,7 @@ module mpm_system
   use mpm_kinematics, only: allocate_kinematics, compute_kinematics, kinematics_t
   use mpm_linear_solver, only: free_solver, linear_solver_t
   use mpm_material, only: material_t
-  use mpm_material_points, only: open_trial, points_t, trial_state_t
+  use mpm_material_points, only: points_t
   use mpm_mesh, only: mesh_t
   use mpm_patches, only: patches_t
   use mpm_recycled_solver, only: recycler_t
@@ -48,7 +48,6 @@ module mpm_system
     type(dof_map_t)       :: dofs
     type(kinematics_t)    :: kinematics
     type(element_sums_t)  :: sums
-    type(trial_state_t)   :: trial
     type(ghost_penalty_t) :: ghost          !! faces of this active set
     type(assembly_map_t)  :: map
     type(csc_matrix_t)    :: tangent
@@ -76,7 +75,6 @@ contains
     call allocate_kinematics(system%kinematics, body%mesh)
     call allocate_sums(system%sums, body%mesh%n_el)
     call open_ghost(system%ghost, body%mesh%n_dim)
-    call open_trial(system%trial, body%points%state)
   end subroutine open_system
 
   !> Releases the factors of the linear solver and the tangent: what is large.
@@ -98,7 +96,7 @@ contains
     system%element = pack([(e, e=1, size(system%active))], system%active)
   end subroutine find_active
 
-  !> Trial state, element sums and internal force at the displacement system%u: what a tangent
+  !> Element sums and internal force at the displacement system%u: what a tangent
   !! needs.
   subroutine evaluate(system, body, outcome)
     type(system_t), intent(inout) :: system
@@ -136,7 +134,7 @@ contains
     call project_onto_patches(system%kinematics, body%mesh, body%patches, system%active)
     call cpu_time(clock(2))
     call system_clock(ticks(1))
-    call update_points(system%trial, system%sums, body%points, body%material, system%kinematics, &
+    call update_points(system%sums, body%points, body%material, system%kinematics, &
                        system%element, with_moduli)
     call system_clock(ticks(2), rate)
     system%point_loop_seconds = system%point_loop_seconds &

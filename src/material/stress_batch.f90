@@ -9,7 +9,7 @@ module mpm_stress_batch
   use mpm_von_mises, only: plastic_flow, yield_tolerance
   implicit none
   private
-  public :: batch_size, put_point, set_material, strain_of_batch, stress_batch_t, update_batch, voigt_pair
+  public :: accept_batch, batch_size, put_point, set_material, stress_batch_t, update_batch, voigt_pair
 
   real(dp), parameter :: no_limit = 0.25_dp*huge(1.0_dp) !! strength of an elastic material
   real(dp), parameter :: largest = 1.0e25_dp             !! beyond it nothing is a motion or a state [-]
@@ -18,7 +18,7 @@ module mpm_stress_batch
   !! numbers, also those of points that are not there.
   type :: stress_batch_t
     real(dp) :: disp_grad_bar(batch_size, 3, 3) = 0.0_dp !! dFbar - I [-]
-    real(dp) :: cg_e_m1(batch_size, 6) = 0.0_dp      !! b_e - 1; in converged, out of the update [-]
+    real(dp) :: cg_e_m1(batch_size, 6) = 0.0_dp      !! b_e - 1; in converged, out trial or new [-]
     real(dp) :: plastic_strain(batch_size) = 0.0_dp  !! accumulated; in converged, out of the update [-]
     real(dp) :: bulk(batch_size) = 1.0_dp            !! K [force/length^2]
     real(dp) :: shear(batch_size) = 1.0_dp           !! G [force/length^2]
@@ -59,14 +59,38 @@ contains
     end if
   end subroutine set_material
 
-  !> Trial state by push-forward, return mapping in principal axes, spatial moduli if they are asked
-  !! for. Source: theory.md (6)-(8), (12); `update_stress` is the reference.
+  !> Stresses at a trial motion, and spatial moduli if they are asked for.
+  !! Source: theory.md (6)-(8), (12); `update_stress` is the reference.
   pure subroutine update_batch(batch, materials, with_moduli)
-    type(stress_batch_t), intent(inout) :: batch
+    type(stress_batch_t), intent(inout) :: batch !! cg_e_m1 out: the trial one
     type(material_t), intent(in) :: materials(:) !! of the points
     logical, intent(in) :: with_moduli           !! .false.: moduli keep what they were
     type(principal_batch_t) :: principal
     real(dp) :: vector(batch_size, 3, 3)
+
+    call return_points(batch, principal, vector, materials)
+    if (with_moduli) call spatial_moduli(batch%moduli, principal, vector, batch%bulk, batch%shear)
+  end subroutine update_batch
+
+  !> The states that a motion ends in, to the last bit those whose stresses `update_batch` gives.
+  pure subroutine accept_batch(strain, batch, materials)
+    real(dp), intent(out) :: strain(batch_size, 6) !! elastic logarithmic strain [-]
+    type(stress_batch_t), intent(inout) :: batch   !! cg_e_m1 out: the new one
+    type(material_t), intent(in) :: materials(:)   !! of the points
+    type(principal_batch_t) :: principal
+    real(dp) :: vector(batch_size, 3, 3)
+
+    call return_points(batch, principal, vector, materials)
+    call sum_of_dyads(strain, principal%strain, principal%dyad)
+    if (any(batch%flows)) call relax_stretches(batch, principal)
+  end subroutine accept_batch
+
+  !> Trial state by push-forward, return mapping in principal axes, stresses.
+  pure subroutine return_points(batch, principal, vector, materials)
+    type(stress_batch_t), intent(inout)  :: batch     !! cg_e_m1 out: the trial one
+    type(principal_batch_t), intent(out) :: principal !! complete
+    real(dp), intent(out) :: vector(batch_size, 3, 3) !! principal directions
+    type(material_t), intent(in) :: materials(:)
 
     call push_forward(batch%cg_e_m1, batch%disp_grad_bar)
     call eigen_of_batch(principal%cg_m1, vector, batch%cg_e_m1)
@@ -75,24 +99,7 @@ contains
     call return_radially(batch, principal, materials)
     call make_dyads(principal%dyad, vector)
     call sum_of_dyads(batch%kirchhoff, principal%kirchhoff, principal%dyad)
-    if (with_moduli) call spatial_moduli(batch%moduli, principal, vector, batch%bulk, batch%shear)
-    if (any(batch%flows)) call relax_stretches(batch, principal)
-  end subroutine update_batch
-
-  !> Elastic logarithmic strain and Kirchhoff stress of converged points. Source: theory.md (6), (7).
-  pure subroutine strain_of_batch(strain, batch)
-    real(dp), intent(out) :: strain(batch_size, 6) !! [-]
-    type(stress_batch_t), intent(inout) :: batch   !! in cg_e_m1 and materials, out kirchhoff
-    type(principal_batch_t) :: principal
-    real(dp) :: vector(batch_size, 3, 3)
-
-    call eigen_of_batch(principal%cg_m1, vector, batch%cg_e_m1)
-    call take_logarithms(principal%strain, principal%cg_m1)
-    call hencky_stress(principal, batch)
-    call make_dyads(principal%dyad, vector)
-    call sum_of_dyads(strain, principal%strain, principal%dyad)
-    call sum_of_dyads(batch%kirchhoff, principal%kirchhoff, principal%dyad)
-  end subroutine strain_of_batch
+  end subroutine return_points
 
   !> Puts a point into a batch; one whose motion cannot be that of a body has failed already.
   pure subroutine put_point(batch, place, disp_grad_bar, cg_e_m1, plastic_strain)

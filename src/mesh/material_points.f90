@@ -8,9 +8,9 @@ module mpm_material_points
   use mpm_text, only: integer_text, real_text
   implicit none
   private
-  public :: points_t, point_state_t, trial_state_t, n_hardening
+  public :: points_t, point_state_t, n_hardening
   public :: allocate_points, allocate_state, bytes_of_points, generate_points
-  public :: group_points, hand_over, open_trial, sort_points
+  public :: group_points, hand_over, sort_points
   public :: centre_of_mass, nearest_point, total_mass, total_volume
   public :: status_inside, status_extrapolated, status_frozen, status_removed
 
@@ -29,12 +29,6 @@ module mpm_material_points
     real(dp), allocatable :: cauchy(:, :)      !! (6, n)  Cauchy stress [force/length^2]
     real(dp), allocatable :: jacobian_bar(:)   !! (n)     product of all det dFbar [-]
   end type point_state_t
-
-  !> What changes during Newton; strain and stress follow from it when an increment is accepted.
-  type :: trial_state_t
-    real(dp), allocatable :: left_cauchy_green_e_m1(:, :) !! (6, n)  b_e - 1 [-]
-    real(dp), allocatable :: hardening(:, :)   !! (n_hardening, n)  accumulated plastic strain [-]
-  end type trial_state_t
 
   !> The points; item index last.
   type :: points_t
@@ -213,15 +207,6 @@ contains
     allocate (state%hardening(n_hardening, n), state%cauchy(6, n), source=0.0_dp)
     allocate (state%jacobian_bar(n), source=1.0_dp)
   end subroutine allocate_state
-
-  !> A trial state equal to the converged one.
-  pure subroutine open_trial(trial, state)
-    type(trial_state_t), intent(out) :: trial
-    type(point_state_t), intent(in)  :: state !! converged
-
-    trial%left_cauchy_green_e_m1 = state%left_cauchy_green_e_m1
-    trial%hardening = state%hardening
-  end subroutine open_trial
 
   !> Groups the points that have a host by it, in ascending order of their id within an element: sums
   !! over the points of an element do not depend on where the points stand.

@@ -17,16 +17,15 @@ OPERATIONS = (  # step, elastic, plastic
     ("principal stresses", 12, 12),
     ("dyads and stress", 48, 48),
     ("spatial moduli, 21 of them", 564, 564),
-    ("b - 1 after the return", 0, 120),
     ("sums over the element", 55, 55),
 )
 FLOPS = {
     "elastic": sum(elastic for _, elastic, _ in OPERATIONS),
     "plastic": sum(plastic for _, _, plastic in OPERATIONS),
 }
-# Bytes per material point. Read: place, element, material, b - 1, hardening, volume and J; written:
-# b - 1 and hardening; a part of the arrays of an element with 11 points: increment and sums.
-BYTES = 84 + 56 + 39
+# Bytes per material point. Read: place, element, material, b - 1, hardening, volume and J; read and
+# written: a part of the arrays of an element with 11 points, increment and sums.
+BYTES = 84 + 39
 WAYS = ("batched", "pointwise")  # with moduli
 
 
