@@ -22,7 +22,7 @@ module mpm_run_memory
 contains
 
   !> Room for the arrays over points and elements that a run adds to its model: more copies of
-  !! points and mesh, the trial state, kinematics and sums of the elements. The tangent is not among
+  !! points and mesh, kinematics and sums of the elements. The tangent is not among
   !! them: it says so itself when it does not fit.
   subroutine check_memory(model, max_memory, error)
     type(model_t), intent(in) :: model               !! complete
