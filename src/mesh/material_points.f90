@@ -10,7 +10,7 @@ module mpm_material_points
   private
   public :: points_t, point_state_t, n_hardening
   public :: allocate_points, allocate_state, bytes_of_points, generate_points
-  public :: group_points, hand_over, sort_points
+  public :: group_points, hand_over, sort_points, unsort_points
   public :: centre_of_mass, nearest_point, total_mass, total_volume
   public :: status_inside, status_extrapolated, status_frozen, status_removed
 
@@ -261,13 +261,27 @@ contains
   !! what is done to all points of an element then walks along the memory.
   pure subroutine sort_points(points)
     type(points_t), intent(inout) :: points !! grouped; every array in the new order
-    integer, allocatable :: order(:)
     integer :: p
 
-    order = [points%order, pack([(p, p=1, points%n)], points%element == 0)]
-    associate (homeless => order(size(points%order) + 1:))
-      call sort_by_id(homeless, points%id)
-    end associate
+    call permute(points, [points%order, pack(points%place, points%element(points%place) == 0)])
+    points%order = [(p, p=1, size(points%order))]
+  end subroutine sort_points
+
+  !> Moves the points back into the order of their ids.
+  pure subroutine unsort_points(points, n_el)
+    type(points_t), intent(inout) :: points !! in the order of their ids, grouped
+    integer, intent(in)           :: n_el   !! elements of the mesh
+
+    call permute(points, points%place)
+    call group_points(points, n_el)
+  end subroutine unsort_points
+
+  !> Gives the points another order; their groups are those of the former.
+  pure subroutine permute(points, order)
+    type(points_t), intent(inout) :: points
+    integer, intent(in)           :: order(:) !! (n)  former places in the new order
+    integer :: p
+
     if (all(order == [(p, p=1, points%n)])) return
     points%x = points%x(:, order)
     points%u = points%u(:, order)
@@ -288,8 +302,7 @@ contains
       state%jacobian_bar = state%jacobian_bar(order)
     end associate
     points%place(points%id) = [(p, p=1, points%n)]
-    points%order = [(p, p=1, size(points%order))]
-  end subroutine sort_points
+  end subroutine permute
 
   !> Gives the arrays of all points away without copying them.
   pure subroutine hand_over(from, to)
