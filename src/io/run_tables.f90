@@ -156,31 +156,33 @@ contains
     type(run_state_t), intent(in) :: state           !! step, increment, attempt
     type(newton_report_t), intent(in) :: report      !! of the attempt
     type(error_t), allocatable, intent(out) :: error !! exit_file
-    real(dp) :: seconds(5)
-    integer :: i, j, linear(2)
+    real(dp), allocatable :: seconds(:, :)
+    integer, allocatable  :: linear(:, :)
+    integer :: i, j, n
 
     if (.not. allocated(report%residual)) return
-    do i = 0, ubound(report%residual, 1)
-      linear = 0
-      if (i > 0 .and. allocated(report%gmres)) then
-        if (i <= size(report%gmres)) linear = [report%gmres(i), merge(1, 0, report%is_new(i))]
+    n = ubound(report%residual, 1)
+    allocate (seconds(0:n, 5), source=0.0_dp)
+    allocate (linear(0:n, 2), source=0)
+    do i = 1, n
+      if (allocated(report%gmres)) then
+        if (i <= size(report%gmres)) linear(i, :) = [report%gmres(i), merge(1, 0, report%is_new(i))]
       end if
-      seconds = 0.0_dp
-      if (i > 0 .and. allocated(report%seconds)) then
-        if (i <= size(report%seconds, 2)) seconds = report%seconds(:, i)
+      if (allocated(report%seconds)) then
+        if (i <= size(report%seconds, 2)) seconds(i, :) = report%seconds(:, i)
       end if
-      call append_rows(tables%iterations(1), file, [int(state%step, ip)], error)
-      call append_rows(tables%iterations(2), file, [int(state%increment, ip)], error)
-      call append_rows(tables%iterations(3), file, [int(state%attempt, ip)], error)
-      call append_rows(tables%iterations(4), file, [int(i, ip)], error)
-      call append_rows(tables%iterations(5), file, report%residual(i:i), error)
-      do j = 1, size(seconds)
-        call append_rows(tables%iterations(j + 5), file, seconds(j:j), error)
-      end do
-      do j = 1, size(linear)
-        call append_rows(tables%iterations(column_of_gmres + j - 1), file, [int(linear(j), ip)], &
-                         error)
-      end do
+    end do
+    call append_rows(tables%iterations(1), file, [(int(state%step, ip), i=0, n)], error)
+    call append_rows(tables%iterations(2), file, [(int(state%increment, ip), i=0, n)], error)
+    call append_rows(tables%iterations(3), file, [(int(state%attempt, ip), i=0, n)], error)
+    call append_rows(tables%iterations(4), file, [(int(i, ip), i=0, n)], error)
+    call append_rows(tables%iterations(5), file, report%residual(0:n), error)
+    do j = 1, size(seconds, 2)
+      call append_rows(tables%iterations(j + 5), file, seconds(:, j), error)
+    end do
+    do j = 1, size(linear, 2)
+      call append_rows(tables%iterations(column_of_gmres + j - 1), file, int(linear(:, j), ip), &
+                       error)
     end do
   end subroutine append_iterations
 

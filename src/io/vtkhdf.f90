@@ -23,7 +23,7 @@ module mpm_vtkhdf
   integer, parameter :: vtk_tetra = 10    !! cell of four nodes
   integer, parameter :: on_points = 1     !! a field with one value per point
   integer, parameter :: on_cells = 2      !! a field with one value per cell
-  integer, parameter :: rows_at_once = 1048576 !! largest chunk
+  integer, parameter :: rows_at_once = 8388608 !! largest chunk: a field of a step in one piece
   character(*), parameter :: folder_of(2) = ["PointData", "CellData "]
 
   !> A field of a file.
