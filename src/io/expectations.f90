@@ -6,7 +6,7 @@ module mpm_expectations
   use mpm_material_points, only: points_t, status_removed
   use mpm_model, only: expectation_t, model_t
   use mpm_patches, only: patches_t
-  use mpm_point_fields, only: point_values
+  use mpm_point_fields, only: point_field
   use mpm_run_state, only: run_state_t
   use mpm_text, only: full_text, integer_text, real_text
   implicit none
@@ -156,23 +156,19 @@ contains
     type(patches_t), intent(in) :: patches !! patch of each element
     real(dp), allocatable :: values(:)
     logical  :: wanted(0:size(patches%of_element))
-    real(dp) :: buffer(points%n), components(9)
-    integer  :: n, p
+    real(dp), allocatable :: field(:, :)
+    integer, allocatable  :: items(:)
+    integer :: p
 
     wanted = .true.
     if (allocated(expected%item)) then
       wanted = .false.
       wanted(expected%item) = .true.
     end if
-    n = 0
-    do p = 1, points%n
-      if (points%status(p) == status_removed .or. .not. wanted(points%element(p))) cycle
-      n = n + 1
-      components = point_values(points, patches, expected%quantity, p)
-      buffer(n) = components(max(1, expected%component))
-    end do
-    allocate (values(n))
-    values(:) = buffer(:n)
+    items = pack([(p, p=1, points%n)], points%status /= status_removed .and. wanted(points%element))
+    field = point_field(points, patches, expected%quantity, items)
+    allocate (values(size(items)))
+    values(:) = field(max(1, expected%component), :)
   end function values_of_points
 
   !> Sum, mean, smallest, largest value or standard deviation (over n, not n - 1); each item

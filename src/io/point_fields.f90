@@ -66,80 +66,32 @@ contains
     end select
   end function component_suffix
 
-  !> Values of a field at one point. TAU = JBAR S; MISES and PRESSURE are those of S, pressure
-  !! positive in compression; F row by row. Without a host ELEMENT and PATCH are 0.
+  !> Values of a field at one point.
   pure function point_values(points, patches, name, p) result(values)
     type(points_t), intent(in)  :: points  !! converged state
     type(patches_t), intent(in) :: patches !! for PATCH
     character(*), intent(in) :: name       !! deck name, upper case
     integer, intent(in) :: p               !! index of the point
     real(dp) :: values(9)                  !! the first n_field_components are set, the rest is 0
+    real(dp), allocatable :: field(:, :)
 
     values = 0.0_dp
-    select case (name)
-    case ("S")
-      values(1:6) = points%state%cauchy(:, p)
-    case ("TAU")
-      values(1:6) = points%state%jacobian_bar(p)*points%state%cauchy(:, p)
-    case ("LE")
-      values(1:6) = points%state%strain_e(:, p)
-    case ("F")
-      values = reshape(transpose(points%def_grad(:, :, p)), [9])
-    case ("U")
-      values(1:size(points%u, 1)) = points%u(:, p)
-    case default
-      values(1) = scalar_value(points, patches, name, p)
-    end select
+    field = point_field(points, patches, name, [p])
+    values(:size(field, 1)) = field(:, 1)
   end function point_values
 
-  !> Value of a scalar field at one point.
-  pure function scalar_value(points, patches, name, p) result(value)
-    type(points_t), intent(in)  :: points  !! converged state
-    type(patches_t), intent(in) :: patches !! for PATCH
-    character(*), intent(in) :: name       !! deck name, upper case
-    integer, intent(in) :: p               !! index of the point
-    real(dp) :: value                      !! 0 for an unknown name
-
-    select case (name)
-    case ("PEEQ")
-      value = points%state%hardening(1, p)
-    case ("J")
-      value = 1.0_dp + det_m1(points%def_grad(:, :, p) - identity)
-    case ("JBAR")
-      value = points%state%jacobian_bar(p)
-    case ("VOL")
-      value = points%volume(p)
-    case ("MISES")
-      value = sqrt(1.5_dp)*deviator_norm(points%state%cauchy(:, p))
-    case ("PRESSURE")
-      value = -sum(points%state%cauchy(1:3, p))/3.0_dp
-    case ("MAT")
-      value = real(points%material(p), dp)
-    case ("ELEMENT")
-      value = real(points%element(p), dp)
-    case ("PATCH")
-      value = 0.0_dp
-      if (points%element(p) > 0) value = real(patches%of_element(points%element(p)), dp)
-    case ("ID")
-      value = real(points%id(p), dp)
-    case default
-      value = 0.0_dp
-    end select
-  end function scalar_value
-
-  !> Values of a field at some points.
+  !> Values of a field at some points. TAU = JBAR S; MISES and PRESSURE are those of S, pressure
+  !! positive in compression; F row by row. Without a host ELEMENT and PATCH are 0.
   pure function point_field(points, patches, name, items) result(values)
     type(points_t), intent(in)  :: points  !! converged state
     type(patches_t), intent(in) :: patches !! for PATCH
     character(*), intent(in) :: name       !! deck name, upper case
     integer, intent(in) :: items(:)        !! indices of the points
-    real(dp), allocatable :: values(:, :)  !! (n_field_components, size(items))
-    real(dp) :: all_components(9)
-    integer :: i, n
+    real(dp), allocatable :: values(:, :)  !! (n_field_components, size(items)), 0 for an unknown name
+    integer :: i, n_dim
 
-    n = n_field_components(name)
-    allocate (values(n, size(items)))
-    ! The large fields: without a look at the name for every point.
+    n_dim = size(points%u, 1)
+    allocate (values(max(1, n_field_components(name)), size(items)), source=0.0_dp)
     select case (name)
     case ("S")
       values(:, :) = points%state%cauchy(:, items)
@@ -153,30 +105,54 @@ contains
       do i = 1, size(items)
         values(:, i) = reshape(transpose(points%def_grad(:, :, items(i))), [9])
       end do
-    case ("PEEQ")
-      values(1, :) = points%state%hardening(1, items)
-    case ("JBAR")
-      values(1, :) = points%state%jacobian_bar(items)
-    case ("VOL")
-      values(1, :) = points%volume(items)
-    case ("ELEMENT")
-      values(1, :) = real(points%element(items), dp)
-    case ("MAT")
-      values(1, :) = real(points%material(items), dp)
-    case ("PATCH")
-      do i = 1, size(items)
-        values(1, i) = 0.0_dp
-        if (points%element(items(i)) == 0) cycle
-        values(1, i) = real(patches%of_element(points%element(items(i))), dp)
-      end do
-    case ("ID")
-      values(1, :) = real(points%id(items), dp)
+    case ("U")
+      values(:n_dim, :) = points%u(:, items)
     case default
-      do i = 1, size(items)
-        all_components = point_values(points, patches, name, items(i))
-        values(:, i) = all_components(:n)
-      end do
+      values(1, :) = scalar_field(points, patches, name, items)
     end select
   end function point_field
+
+  !> Values of a scalar field at some points.
+  pure function scalar_field(points, patches, name, items) result(values)
+    type(points_t), intent(in)  :: points  !! converged state
+    type(patches_t), intent(in) :: patches !! for PATCH
+    character(*), intent(in) :: name       !! deck name, upper case
+    integer, intent(in) :: items(:)        !! indices of the points
+    real(dp) :: values(size(items))        !! 0 for an unknown name
+    integer :: i
+
+    values = 0.0_dp
+    select case (name)
+    case ("PEEQ")
+      values = points%state%hardening(1, items)
+    case ("J")
+      do i = 1, size(items)
+        values(i) = 1.0_dp + det_m1(points%def_grad(:, :, items(i)) - identity)
+      end do
+    case ("JBAR")
+      values = points%state%jacobian_bar(items)
+    case ("VOL")
+      values = points%volume(items)
+    case ("MISES")
+      do i = 1, size(items)
+        values(i) = sqrt(1.5_dp)*deviator_norm(points%state%cauchy(:, items(i)))
+      end do
+    case ("PRESSURE")
+      do i = 1, size(items)
+        values(i) = -sum(points%state%cauchy(1:3, items(i)))/3.0_dp
+      end do
+    case ("MAT")
+      values = real(points%material(items), dp)
+    case ("ELEMENT")
+      values = real(points%element(items), dp)
+    case ("PATCH")
+      do i = 1, size(items)
+        if (points%element(items(i)) == 0) cycle
+        values(i) = real(patches%of_element(points%element(items(i))), dp)
+      end do
+    case ("ID")
+      values = real(points%id(items), dp)
+    end select
+  end function scalar_field
 
 end module mpm_point_fields
