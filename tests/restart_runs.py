@@ -129,11 +129,7 @@ RF, U
 
 
 def recycled(deck):
-    """The deck with factors of the linear solver that outlive an increment.
-
-    Its increments are others, because they follow the number of corrections.
-    """
-    deck = deck.replace("frozen, 0.17, 0.1\n", "frozen, 0.17, 0.2\n")
+    """The deck with factors of the linear solver that outlive an increment."""
     first, rest = deck.split("*STEP", 1)
     line, rest = rest.split("\n", 1)
     return f"{first}*STEP{line}\n*CONTROLS, LINEAR SOLVER=RECYCLED\n{rest}"
