@@ -45,8 +45,8 @@ contains
     gmres%n = n
     gmres%first = equal_columns(matrix)
     gmres%n_largest = n_largest
-    allocate (gmres%basis(n, n_largest + 1), source=0.0_dp)
-    allocate (gmres%direction(n, n_largest), source=0.0_dp)
+    ! Without values: memory that no direction needs is not touched.
+    allocate (gmres%basis(n, n_largest + 1), gmres%direction(n, n_largest))
     allocate (gmres%triangle(n_largest + 1, n_largest), source=0.0_dp)
     allocate (gmres%turn(2, n_largest), source=0.0_dp)
     allocate (gmres%target(n_largest + 1), source=0.0_dp)

@@ -7,7 +7,7 @@ module mpm_umfpack_binding
   public :: umfpack_dl_defaults, umfpack_dl_symbolic, umfpack_dl_numeric, umfpack_dl_solve
   public :: umfpack_dl_free_symbolic, umfpack_dl_free_numeric
   public :: umfpack_control, umfpack_info
-  public :: control_strategy, control_ordering, control_refinements
+  public :: control_initial, control_strategy, control_ordering, control_refinements
   public :: strategy_symmetric, ordering_cholmod, info_flops, info_entries
   public :: info_peak, info_peak_estimate, info_rcond, info_unit
   public :: info_entries_l, info_entries_u, info_flops_estimate, info_symmetric_entries
@@ -18,6 +18,7 @@ module mpm_umfpack_binding
   integer, parameter :: umfpack_control = 20     !! length of the array of controls
   integer, parameter :: umfpack_info = 90        !! length of the array of statistics
   integer, parameter :: control_strategy = 5     !! position of UMFPACK_STRATEGY
+  integer, parameter :: control_initial = 6      !! position of UMFPACK_ALLOC_INIT
   integer, parameter :: control_refinements = 7  !! position of UMFPACK_IRSTEP
   integer, parameter :: control_ordering = 10    !! position of UMFPACK_ORDERING
   integer, parameter :: info_unit = 3            !! position of UMFPACK_SIZE_OF_UNIT
