@@ -89,10 +89,14 @@ contains
     type(model_t), intent(in)         :: model
     type(restart_t), intent(inout)    :: restart  !! perhaps loaded
     type(error_t), allocatable, intent(out) :: error
+    type(points_t) :: points
     logical :: loaded
 
     loaded = restart%is_loaded
+    if (loaded) call hand_over(restart%points, points) ! they are large: no copy
     analysis%kept = restart
+    if (loaded) call hand_over(points, analysis%kept%points)
+    if (allocated(restart%factors%val)) deallocate (restart%factors%val)
     analysis%last_written = wall_time()
     if (loaded) then
       call restore_output(output, restart, model, error)
