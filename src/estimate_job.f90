@@ -5,6 +5,8 @@ module mpm_estimate_job
   use mpm_factor_estimate, only: factor_seconds, measure_flop_rate
   use mpm_increments, only: accept_step, begin_step, schedule_t, start_increment
   use mpm_kinds, only: dp
+  use mpm_linear_method, only: chosen_method, method_recycled
+  use mpm_material_points, only: hand_over, unsort_points
   use mpm_model, only: model_t
   use mpm_results_file, only: is_field_output_due
   use mpm_results_size, only: bytes_of_output, bytes_once
@@ -48,6 +50,8 @@ contains
       call check_limit(error, system, model, max_memory)
     end if
     call free_system(system)
+    call unsort_points(body%points, body%mesh%n_el)
+    call hand_over(body%points, model%points)
   end subroutine estimate_job
 
   !> Counts and memory.
@@ -65,6 +69,10 @@ contains
     estimate%n_unknowns = system%dofs%n
     estimate%n_nonzeros = system%tangent%nnz
     estimate%memory = memory_of_run(system, model)
+    associate (newton => model%step(1)%newton)
+      estimate%keeps_factors = chosen_method(newton%linear_solver, system%dofs%n, &
+                                             newton%least_recycled) == method_recycled
+    end associate
   end subroutine note_sizes
 
   !> Times one evaluation with its tangent, and dense products, on one thread: threads that wait for

@@ -174,7 +174,6 @@ contains
     type(run_state_t)    :: state
     type(restart_t)      :: restart
     type(run_estimate_t) :: estimate
-    type(model_t), allocatable :: scratch
     type(error_t), allocatable :: failure
     character(:), allocatable  :: folder, text
 
@@ -189,11 +188,8 @@ contains
       end if
     end if
     if (options%max_memory > 0.0_dp .and. .not. restart%is_loaded) then
-      allocate (scratch)
-      scratch = model ! its points are used up
-      call estimate_job(estimate, scratch, options%max_memory, .false., error)
+      call estimate_job(estimate, model, options%max_memory, .false., error)
       if (allocated(error)) return
-      deallocate (scratch)
     end if
     folder = options%output
     if (len(folder) == 0) folder = folder_of(options%deck)

@@ -3,6 +3,7 @@ module mpm_run_memory
   use mpm_error, only: error_t, exit_solver, make_error
   use mpm_factor_estimate, only: factor_estimate
   use mpm_kinds, only: dp, ip
+  use mpm_linear_method, only: chosen_method, method_recycled
   use mpm_material_points, only: bytes_of_points
   use mpm_memory, only: has_room, megabytes
   use mpm_model, only: model_t
@@ -14,10 +15,11 @@ module mpm_run_memory
   public :: check_limit, check_memory, memory_of_run
 
   integer, parameter :: copies = 2          !! of the mesh: as read, and as it moves
-  real(dp), parameter :: program = 3.0e7_dp !! code and libraries of the smallest run [bytes]
+  real(dp), parameter :: program = 3.5e7_dp !! code and libraries of the smallest run [bytes]
   real(dp), parameter :: left_over = 1.08_dp !! with what was freed when the model was built
   real(dp), parameter :: gigabyte = 1.0e9_dp
   integer, parameter :: full_tensors = 2*9 + 4, sums = 6 + 36 + 1 !! reals of an element
+  real(dp), parameter :: directions = 41.0_dp !! of GMRES, as many as are mostly in use
 
 contains
 
@@ -106,6 +108,11 @@ contains
       if (allocated(map%position)) then
         need%pattern = need%pattern + real(4*size(map%position, kind=ip), dp) &
                        + real(4*size(map%node), dp) + real(4*size(map%element_local), dp)
+      end if
+      if (chosen_method(model%step(1)%newton%linear_solver, tangent%n, &
+                        model%step(1)%newton%least_recycled) == method_recycled) then
+        need%pattern = need%pattern + 8.0_dp*(real(tangent%nnz, dp) &
+                                              + directions*real(tangent%n, dp))
       end if
       need%factors = factor_estimate(system%solver, real(tangent%nnz, dp))
     end associate

@@ -33,7 +33,8 @@ module mpm_run_estimate
     integer(ip) :: n_nonzeros = 0_ip         !! of the tangent
     type(memory_need_t) :: memory
     real(dp) :: point_seconds = 0.0_dp       !! CPU of points, forces, tangent in an iteration [s]
-    real(dp) :: factor_seconds = 0.0_dp      !! CPU of a factorisation [s]
+    real(dp) :: factor_seconds = 0.0_dp      !! CPU of a factorisation, 0 = unknown [s]
+    logical  :: keeps_factors = .false.      !! not every iteration makes new factors
     integer  :: n_increments = 0             !! if none is cut, 0 = the deck leaves it to the run
     integer  :: n_outputs = 0                !! increments with fields, 0 = left to the run
     real(dp) :: output_bytes = 0.0_dp        !! fields of one output before compression [bytes]
@@ -123,10 +124,15 @@ contains
     type(run_estimate_t), intent(in) :: estimate
     character(:), allocatable :: text
 
-    text = row("CPU seconds of an iteration", "about "// &
-               short_text(estimate%point_seconds + estimate%factor_seconds)//": points "// &
-               short_text(estimate%point_seconds)//", factorisation "// &
-               short_text(estimate%factor_seconds))
+    if (estimate%factor_seconds <= 0.0_dp) then
+      text = row("CPU seconds of an iteration", "points about "//short_text(estimate%point_seconds)// &
+                 ", factorisation unknown")
+      return
+    end if
+    text = "about "//short_text(estimate%point_seconds + estimate%factor_seconds)//": points "// &
+           short_text(estimate%point_seconds)//", factorisation "//short_text(estimate%factor_seconds)
+    if (estimate%keeps_factors) text = text//", not in each"
+    text = row("CPU seconds of an iteration", text)
   end function seconds_text
 
   !> What is written.

@@ -16,7 +16,6 @@ module mpm_factor_estimate
   private
   public :: factor_estimate_t, factor_estimate, factor_seconds, measure_flop_rate
 
-  real(dp), parameter :: first_share = 1.2_dp    !! room that UMFPACK takes over the expected fill
   real(dp), parameter :: bytes_of_entry = 53.0_dp !! of the matrix, in copies while it is factorised
   real(dp), parameter :: half_speed = 2.5e11_dp  !! flops of a factorisation that runs at half the
                                                  !! speed of dense products
@@ -34,7 +33,8 @@ module mpm_factor_estimate
 
 contains
 
-  !> Reads the analysis; entries and flops stay zero if they are not known. Without the fill of a symmetric ordering the bounds are expected.
+  !> Reads the analysis; entries and flops stay zero if they are not known. Without the fill of a
+  !! symmetric ordering the bounds are expected.
   pure function factor_estimate(solver, nnz) result(estimate)
     type(linear_solver_t), intent(in) :: solver !! analysed
     real(dp), intent(in) :: nnz                 !! stored entries of the matrix
@@ -58,7 +58,7 @@ contains
       if (info(info_symmetric_entries) > 0.0_dp) then
         estimate%entries = min(info(info_symmetric_entries), estimate%entries_bound)
         estimate%flops = min(info(info_symmetric_flops), estimate%flops_bound)
-        estimate%peak = min(estimate%peak_bound, of_matrix + first_share*info(info_unit) &
+        estimate%peak = min(estimate%peak_bound, of_matrix + info(info_unit) &
                             *info(info_variable_peak)*estimate%entries/estimate%entries_bound)
       end if
       estimate%kept = 8.0_dp*estimate%entries
