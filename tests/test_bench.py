@@ -101,6 +101,14 @@ def test_solver_is_asked_for_in_every_deck(tmp_path):
         assert text.count("\n*CONTROLS, LINEAR SOLVER=RECYCLED\n*BOUNDARY\n") == 1
 
 
+def test_controls_of_a_case_stand_in_its_deck(tmp_path):
+    case = Case("stretch", CASES[0].deck, controls="TOLERANCE=1e-10")
+    text = write_deck(case, "DIRECT", tmp_path / "solver", ROOT).read_text()
+    assert text.count("\n*CONTROLS, TOLERANCE=1e-10, LINEAR SOLVER=DIRECT\n*BOUNDARY\n") == 1
+    text = write_deck(case, DEFAULT, tmp_path / "default", ROOT).read_text()
+    assert text.count("\n*CONTROLS, TOLERANCE=1e-10\n*BOUNDARY\n") == 1
+
+
 def test_finer_footing_takes_a_few_increments(tmp_path, monkeypatch):
     monkeypatch.setattr(cases, "make_mesh", lambda size, folder, root: folder / f"{size}.msh")
     case = Case("some", "footing/footing.inp", "fine", 4)
