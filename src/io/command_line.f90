@@ -1,9 +1,9 @@
 !> The command line: options, their help, and what is wrong with them.
 module mpm_command_line
-  use mpm_build_info, only: build_type, compiler, git_revision, hdf5_version, metis_version, &
-    mumps_version, umfpack_version, version
+  use mpm_build_info, only: build_type, compiler, git_revision, version
   use mpm_error, only: error_t, exit_usage, make_error
   use mpm_kinds, only: dp
+  use mpm_library_text, only: library_text
   use mpm_model, only: formulation_fbar, formulation_standard
   use mpm_text, only: nearest_word, normalize_keyword, parse_integer, parse_real
   implicit none
@@ -383,9 +383,7 @@ contains
     character(:), allocatable :: text
 
     text = "tessera "//version//" ("//git_revision//", "//build_type//")"//new_line("a")// &
-           compiler//", HDF5 "//hdf5_version//", UMFPACK "//umfpack_version//", METIS "// &
-           metis_version
-    if (len(mumps_version) > 0) text = text//", MUMPS "//mumps_version
+           compiler//", "//library_text()
   end function version_text
 
 end module mpm_command_line

@@ -2,10 +2,10 @@
 module mpm_run_state
   use, intrinsic :: iso_c_binding, only: c_int
   use mpm_build_info, only: build_compiler => compiler, build_version => version, compiler_flags, &
-                            git_revision, hdf5_version, metis_version, mumps_version, &
-                            umfpack_version
+                            git_revision
   use mpm_force_balance, only: force_imbalance, smallest_force
   use mpm_kinds, only: dp
+  use mpm_library_text, only: library_text
   use mpm_locking_meter, only: measure_checkerboard, n_active_patches
   use mpm_model, only: model_t
   use mpm_patches, only: patches_t
@@ -179,8 +179,7 @@ contains
     info%version = build_version
     info%git = git_revision
     info%compiler = build_compiler//" "//compiler_flags
-    info%libraries = "HDF5 "//hdf5_version//", UMFPACK "//umfpack_version//", METIS "//metis_version
-    if (len(mumps_version) > 0) info%libraries = info%libraries//", MUMPS "//mumps_version
+    info%libraries = library_text()
     call date_and_time(date, time, zone)
     info%started = date(1:4)//"-"//date(5:6)//"-"//date(7:8)//"T"//time(1:2)//":"//time(3:4) &
                    //":"//time(5:6)//zone(1:3)//":"//zone(4:5)
