@@ -147,7 +147,8 @@ contains
 
     select case (method)
     case (method_automatic)
-      text = "RECYCLED from "//integer_text(least)//" unknowns on, DIRECT below"
+      text = "DIRECT"
+      if (least < huge(least)) text = "RECYCLED from "//integer_text(least)//" unknowns on, DIRECT below"
     case default
       text = method_name(method)
     end select
