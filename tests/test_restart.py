@@ -132,8 +132,10 @@ def test_restart_request_is_obeyed(run_tessera, tmp_path):
 def running(program, folder, deck, *arguments):
     """A run in the background, in its second increment at least."""
     (folder / "job.inp").write_text(deck)
+    # In the background of a shell the tests would ignore them, and so would the run.
+    heed = ["env", "--default-signal=INT,TERM,HUP"]
     process = subprocess.Popen(
-        [str(program), "job.inp", "-v", *arguments],
+        [*heed, str(program), "job.inp", "-v", *arguments],
         cwd=folder,
         stderr=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
