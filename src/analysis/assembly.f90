@@ -7,13 +7,10 @@ module mpm_assembly
   use mpm_mesh, only: mesh_t
   use mpm_patches, only: patches_t
   use mpm_sparsity, only: assembly_map_t, turn_block
-  use mpm_tensor, only: tensor_from_voigt
+  use mpm_tensor, only: tensor_from_voigt, voigt_index
   implicit none
   private
   public :: apply_tangent, assemble_tangent, internal_force, scatter_block
-
-  integer, parameter :: voigt_index(3, 3) = reshape([1, 4, 6, 4, 2, 5, 6, 5, 3], [3, 3])
-    !! Voigt component of a tensor index pair
 
 contains
 

@@ -11,7 +11,8 @@ module mpm_equilibrium
   use mpm_linear_method, only: chosen_method, method_automatic
   use mpm_linear_solver, only: solver_memory, solver_not_finite, solver_ok
   use mpm_residual_norm, only: force_scale, node_of_largest, relative
-  use mpm_system, only: body_t, evaluate, evaluate_force, evaluation_inverted, evaluation_ok, system_t
+  use mpm_system, only: body_t, evaluate, evaluate_force, evaluation_inverted, evaluation_ok, &
+    system_t
   use mpm_tangent_solution, only: choose_accuracy, factorize_again, forcing_t, solve_tangent
   implicit none
   private
@@ -227,7 +228,8 @@ contains
     integer :: outcome
 
     report%n_iterations = iteration
-    if (.not. system%sums%has_moduli) call measure(newton, system, report, body, iteration - 1, .true.)
+    if (.not. system%sums%has_moduli) &
+      call measure(newton, system, report, body, iteration - 1, .true.)
     call cpu_time(clock(1))
     call assemble_tangent(system%tangent, system%map, body%mesh, body%patches, system%kinematics, system%sums)
     call add_ghost_tangent(system%tangent, system%map, system%ghost)

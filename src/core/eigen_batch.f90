@@ -13,7 +13,8 @@ module mpm_eigen_batch
   integer, parameter :: batch_size = 32 !! tensors of a batch: what stays in the first-level cache
 
   integer, parameter  :: max_sweeps = 12
-  integer, parameter  :: plane(5, 3) = reshape([1, 2, 1, 3, 2, 1, 3, 3, 1, 2, 2, 3, 2, 1, 3], [5, 3])
+  integer, parameter  :: plane(5, 3) = reshape([1, 2, 1, 3, 2, 1, 3, 3, 1, 2, 2, 3, 2, 1, 3], &
+                                               [5, 3])
     !! p, q and the places of pq, pr, qr among the entries 12, 23, 13
   real(dp), parameter :: negligible = 3.0e-19_dp !! off-diagonal entry over the largest entries [-]
   real(dp), parameter :: smallest = 1.0e-140_dp  !! entry whose square is still a normal number
@@ -45,12 +46,13 @@ contains
       vector(:, i, i) = 1.0_dp
     end do
     do l = 1, batch_size
-      limit(l) = max(smallest, negligible*(abs(voigt(l, 1)) + abs(voigt(l, 2)) + abs(voigt(l, 3)) &
-                                           + abs(voigt(l, 4)) + abs(voigt(l, 5)) + abs(voigt(l, 6))))
+      limit(l) = abs(voigt(l, 1)) + abs(voigt(l, 2)) + abs(voigt(l, 3)) &
+                 + abs(voigt(l, 4)) + abs(voigt(l, 5)) + abs(voigt(l, 6))
+      limit(l) = max(smallest, negligible*limit(l))
     end do
     do sweep = 1, max_sweeps
-      if (all(abs(off(:, 1)) <= limit .and. abs(off(:, 2)) <= limit .and. abs(off(:, 3)) <= limit)) &
-        exit
+      if (all(abs(off(:, 1)) <= limit .and. abs(off(:, 2)) <= limit &
+              .and. abs(off(:, 3)) <= limit)) exit
       do i = 1, 3
         call rotate(value, off, vector, plane(:, i), limit)
       end do
@@ -61,7 +63,7 @@ contains
   !! negligible stay as they are, to the last bit.
   pure subroutine rotate(value, off, vector, plane, limit)
     real(dp), intent(inout) :: value(batch_size, 3)     !! diagonal
-    real(dp), intent(inout) :: off(batch_size, 3)       !! entries 12, 23, 13; that of the plane becomes zero
+    real(dp), intent(inout) :: off(batch_size, 3)       !! entries 12, 23, 13; one becomes zero
     real(dp), intent(inout) :: vector(batch_size, 3, 3) !! rotated with them
     integer, intent(in)     :: plane(5)                 !! p, q, and the places of pq, pr, qr in off
     real(dp), intent(in)    :: limit(batch_size)        !! what is negligible

@@ -8,10 +8,12 @@ module mpm_tensor
   implicit none
   private
   public :: cross_product, deviator_norm, expm1, inverse, log1p, det_m1, tensor_from_voigt, trace
-  public :: push_forward_m1, voigt_from_tensor, voigt_row, voigt_column, identity
+  public :: push_forward_m1, voigt_from_tensor, voigt_row, voigt_column, voigt_index, identity
 
   integer, parameter :: voigt_row(6) = [1, 2, 3, 1, 2, 1]    !! first index of a Voigt component
   integer, parameter :: voigt_column(6) = [1, 2, 3, 2, 3, 3] !! second index of a Voigt component
+  integer, parameter :: voigt_index(3, 3) = reshape([1, 4, 6, 4, 2, 5, 6, 5, 3], [3, 3])
+    !! Voigt component of a pair of indices
   real(dp), parameter :: identity(3, 3) = &
     reshape([1.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [3, 3])
 

@@ -1,6 +1,7 @@
 !> The libraries that this program was built with, for `--version`, the log and the results.
 module mpm_library_text
-  use mpm_build_info, only: hdf5_version, isal_version, metis_version, mumps_version, umfpack_version
+  use mpm_build_info, only: hdf5_version, isal_version, metis_version, mumps_version, &
+    umfpack_version
   implicit none
   private
   public :: library_text

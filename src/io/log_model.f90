@@ -127,7 +127,8 @@ contains
            //integer_text(step%newton%max_backtracks)//" backtracks, prediction " &
            //trim(merge("on ", "off", step%newton%prediction))//", stretch at most " &
            //real_text(step%newton%max_stretch)//line_end &
-           //"    linear solver: "//solver_text(step%newton%linear_solver, step%newton%least_recycled)//line_end
+           //"    linear solver: "//solver_text(step%newton%linear_solver, &
+                                              step%newton%least_recycled)//line_end
     if (step%newton%eigenvalues) text = text//"    eigenvalues of the tangent: " &
       & //"in every increment"//line_end
     if (allocated(step%constraint)) then
@@ -148,7 +149,8 @@ contains
     select case (method)
     case (method_automatic)
       text = "DIRECT"
-      if (least < huge(least)) text = "RECYCLED from "//integer_text(least)//" unknowns on, DIRECT below"
+      if (least < huge(least)) &
+        text = "RECYCLED from "//integer_text(least)//" unknowns on, DIRECT below"
     case default
       text = method_name(method)
     end select

@@ -91,7 +91,8 @@ contains
     integer, intent(in)       :: i_step !! number of the step, 0: none has begun
 
     in_geostatic_step = .false.
-    if (i_step >= 1 .and. i_step <= size(model%step)) in_geostatic_step = model%step(i_step)%geostatic
+    if (i_step >= 1 .and. i_step <= size(model%step)) &
+      in_geostatic_step = model%step(i_step)%geostatic
   end function in_geostatic_step
 
   !> What run it is and where it stands.

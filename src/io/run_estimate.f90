@@ -125,12 +125,13 @@ contains
     character(:), allocatable :: text
 
     if (estimate%factor_seconds <= 0.0_dp) then
-      text = row("CPU seconds of an iteration", "points about "//short_text(estimate%point_seconds)// &
-                 ", factorisation unknown")
+      text = row("CPU seconds of an iteration", "points about "// &
+                 short_text(estimate%point_seconds)//", factorisation unknown")
       return
     end if
     text = "about "//short_text(estimate%point_seconds + estimate%factor_seconds)//": points "// &
-           short_text(estimate%point_seconds)//", factorisation "//short_text(estimate%factor_seconds)
+           short_text(estimate%point_seconds)//", factorisation "// &
+           short_text(estimate%factor_seconds)
     if (estimate%keeps_factors) text = text//", not in each"
     text = row("CPU seconds of an iteration", text)
   end function seconds_text

@@ -59,7 +59,7 @@ contains
   !! (d tau_i / d eps_j - 2 tau_i delta_ij) m_i (x) m_j and the shear moduli of the three planes.
   !! Source: theory.md (12); `mpm_hencky` is the reference.
   pure subroutine spatial_moduli(c, principal, vector, bulk, shear)
-    real(dp), intent(out) :: c(batch_size, 21)           !! upper triangle by columns, see voigt_pair
+    real(dp), intent(out) :: c(batch_size, 21)           !! upper triangle, see voigt_pair
                                                          !! [force/length^2]
     type(principal_batch_t), intent(in) :: principal     !! complete
     real(dp), intent(in) :: vector(batch_size, 3, 3)     !! principal directions

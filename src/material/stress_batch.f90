@@ -1,25 +1,27 @@
 !> Stress update of a batch of points, the fast twin of `update_stress`: the same formulas without a
 !! branch on material or state inside the loops over points.
 module mpm_stress_batch
-  use mpm_batch_moduli, only: make_dyads, principal_batch_t, spatial_moduli, sum_of_dyads, voigt_pair
+  use mpm_batch_moduli, only: make_dyads, principal_batch_t, spatial_moduli, sum_of_dyads, &
+    voigt_pair
   use mpm_eigen_batch, only: batch_size, eigen_of_batch, expm1_of_batch, log1p_of_batch
   use mpm_kinds, only: dp
   use mpm_material, only: bulk_modulus, law_von_mises, material_t, shear_modulus, yield_stress_at
-  use mpm_tensor, only: voigt_column, voigt_row
+  use mpm_tensor, only: voigt_column, voigt_index, voigt_row
   use mpm_von_mises, only: plastic_flow, yield_tolerance
   implicit none
   private
-  public :: accept_batch, batch_size, put_point, set_material, stress_batch_t, update_batch, voigt_pair
+  public :: accept_batch, batch_size, put_point, set_material, stress_batch_t, update_batch
+  public :: voigt_pair
 
   real(dp), parameter :: no_limit = 0.25_dp*huge(1.0_dp) !! strength of an elastic material
-  real(dp), parameter :: largest = 1.0e25_dp             !! beyond it nothing is a motion or a state [-]
+  real(dp), parameter :: largest = 1.0e25_dp             !! beyond it nothing is a state [-]
 
   !> Points side by side; Voigt order 11, 22, 33, 12, 23, 13, tensor components. All entries must be
   !! numbers, also those of points that are not there.
   type :: stress_batch_t
     real(dp) :: disp_grad_bar(batch_size, 3, 3) = 0.0_dp !! dFbar - I [-]
     real(dp) :: cg_e_m1(batch_size, 6) = 0.0_dp      !! b_e - 1; in converged, out trial or new [-]
-    real(dp) :: plastic_strain(batch_size) = 0.0_dp  !! accumulated; in converged, out of the update [-]
+    real(dp) :: plastic_strain(batch_size) = 0.0_dp  !! accumulated; in converged, out new [-]
     real(dp) :: bulk(batch_size) = 1.0_dp            !! K [force/length^2]
     real(dp) :: shear(batch_size) = 1.0_dp           !! G [force/length^2]
     real(dp) :: strength(batch_size) = no_limit      !! sqrt(3 J2) at yield, at the strain so far
@@ -126,15 +128,14 @@ contains
   pure subroutine push_forward(c, h)
     real(dp), intent(inout) :: c(batch_size, 6) !! in converged, out trial b_e - 1 [-]
     real(dp), intent(in) :: h(batch_size, 3, 3) !! dFbar - I [-]
-    integer, parameter :: voigt(3, 3) = reshape([1, 4, 6, 4, 2, 5, 6, 5, 3], [3, 3])
     real(dp) :: half(batch_size, 3, 3)
     integer :: i, j, l, v
 
     do j = 1, 3
       do i = 1, 3
         do l = 1, batch_size
-          half(l, i, j) = c(l, voigt(i, j)) + (h(l, i, 1)*c(l, voigt(1, j)) &
-                          + h(l, i, 2)*c(l, voigt(2, j)) + h(l, i, 3)*c(l, voigt(3, j)))
+          half(l, i, j) = c(l, voigt_index(i, j)) + (h(l, i, 1)*c(l, voigt_index(1, j)) &
+                          + h(l, i, 2)*c(l, voigt_index(2, j)) + h(l, i, 3)*c(l, voigt_index(3, j)))
         end do
       end do
     end do
@@ -193,7 +194,8 @@ contains
       principal%deviator(l, 1) = (a - c)/3.0_dp
       principal%deviator(l, 2) = (b - a)/3.0_dp
       principal%deviator(l, 3) = (c - b)/3.0_dp
-      square = principal%deviator(l, 1)**2 + principal%deviator(l, 2)**2 + principal%deviator(l, 3)**2
+      square = principal%deviator(l, 1)**2 + principal%deviator(l, 2)**2 &
+               + principal%deviator(l, 3)**2
       equivalent(l) = batch%shear(l)*sqrt(6.0_dp*square)
     end do
     batch%flows = equivalent > batch%strength*(1.0_dp + yield_tolerance)
@@ -210,14 +212,14 @@ contains
   !! reference where it ends in a later one.
   pure subroutine find_flow(flow, batch, equivalent, materials)
     real(dp), intent(out) :: flow(batch_size)           !! 0 where nothing flows [-]
-    type(stress_batch_t), intent(inout) :: batch        !! plastic_strain out, slope of the last segment
+    type(stress_batch_t), intent(inout) :: batch        !! out plastic_strain, slope where it ends
     real(dp), intent(in) :: equivalent(batch_size)      !! trial sqrt(3 J2) [force/length^2]
     type(material_t), intent(in) :: materials(:)
     integer :: l
 
     do l = 1, batch_size
-      flow(l) = merge((equivalent(l) - batch%strength(l))/(3.0_dp*batch%shear(l) + batch%slope(l)), &
-                      0.0_dp, batch%flows(l))
+      flow(l) = merge((equivalent(l) - batch%strength(l)) &
+                      /(3.0_dp*batch%shear(l) + batch%slope(l)), 0.0_dp, batch%flows(l))
     end do
     if (any(batch%plastic_strain + flow > batch%segment_end)) then
       do l = 1, batch_size
@@ -245,7 +247,8 @@ contains
       ratio = shear_3*flow(l)/safe
       principal%softening(l) = ratio
       ! dev.dev = (equivalent/G)**2/6
-      principal%along(l) = merge(2.0_dp*batch%shear(l)*(shear_3/(shear_3 + batch%slope(l)) - ratio) &
+      principal%along(l) = merge(2.0_dp*batch%shear(l) &
+                                 *(shear_3/(shear_3 + batch%slope(l)) - ratio) &
                                  *6.0_dp*batch%shear(l)**2/(safe*safe), 0.0_dp, batch%flows(l))
     end do
     do i = 1, 3
