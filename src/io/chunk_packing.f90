@@ -3,6 +3,7 @@
 ! allow(assumed-size)
 module mpm_chunk_packing
   use, intrinsic :: iso_c_binding, only: c_f_pointer, c_int32_t, c_int8_t, c_loc, c_long, c_ptr
+  use mpm_build_info, only: isal_version
   use mpm_kinds, only: ip
   implicit none
   private
@@ -37,6 +38,7 @@ contains
     integer :: status
 
     n_bytes = 0_ip
+    if (len(isal_version) == 0) return
     room = int(n_values, ip)*int(bytes_of_value, ip)
     room = room + room/32_ip + 1024_ip
     allocate (shuffled(n_values, bytes_of_value), stat=status, errmsg=reason)

@@ -3,7 +3,7 @@
 !! They are open as long as their file. Every procedure returns at once when `error` is set already.
 ! allow(assumed-size)
 module mpm_hdf5_series
-  use, intrinsic :: iso_c_binding, only: c_int32_t, c_loc
+  use, intrinsic :: iso_c_binding, only: c_int32_t, c_loc, c_null_ptr, c_ptr
   use hdf5, only: h5dcreate_f, h5dget_space_f, h5dset_extent_f, h5dwrite_f, &
                   h5kind_to_type, h5p_dataset_create_f, h5pclose_f, h5pcreate_f, h5pset_chunk_f, &
                   h5pset_deflate_f, h5pset_shuffle_f, h5s_select_set_f, h5s_unlimited_f, &
@@ -40,6 +40,14 @@ module mpm_hdf5_series
     type(series_layout_t) :: layout
     integer :: number = 0 !! in the list of its file, 0 = not created
   end type series_t
+
+  !> Rows on their way into a dataset.
+  type :: rows_t
+    integer(hid_t) :: memory_type = -1_hid_t     !! of the plain values
+    type(c_ptr)    :: plain = c_null_ptr         !! the values, row by row
+    integer(c_int32_t), allocatable :: packed(:) !! the chunk that they are, as it is stored
+    integer(ip)    :: n_bytes = 0_ip             !! of it, 0: HDF5 packs, if anybody does
+  end type rows_t
 
   !> Appends rows of reals or of integers.
   interface append_rows
@@ -116,35 +124,19 @@ contains
     type(error_t), allocatable, intent(inout) :: error !! exit_file
     integer(ip), allocatable, target :: buffer(:)
     integer(c_int32_t), allocatable, target :: short(:)
-    integer(c_int32_t), allocatable :: packed(:)
-    integer(hid_t) :: id, memory, space
-    integer(ip) :: n_bytes
-    integer :: status
+    type(rows_t) :: rows
 
     call check_writable(file, error)
     if (allocated(error)) return
     allocate (buffer(size(values)))
     buffer(:) = values
-    n_bytes = 0_ip
+    rows%memory_type = h5kind_to_type(ip, h5_integer_kind)
+    rows%plain = c_loc(buffer)
     if (series%layout%kind == kind_int32 .and. fills_chunk(series, file, size(values))) then
       short = int(values, c_int32_t)
-      call pack_chunk(packed, n_bytes, c_loc(short), size(short), 4)
+      call pack_chunk(rows%packed, rows%n_bytes, c_loc(short), size(short), 4)
     end if
-    call grow(series, file, size(values), id, memory, space, status)
-    if (status >= 0) then
-      if (n_bytes > 0_ip) then
-        call put_chunk(id, row_count(series, file) - size(values, kind=ip), packed, n_bytes, status)
-      else
-        call h5dwrite_f(id, h5kind_to_type(ip, h5_integer_kind), c_loc(buffer), status, &
-                        memory, space)
-      end if
-    end if
-    if (status < 0) then
-      call fail_hdf5_file(file, "write", error)
-      return
-    end if
-    call h5sclose_f(memory, status)
-    call h5sclose_f(space, status)
+    call write_rows(series, file, size(values), rows, error)
   end subroutine append_integers
 
   !> Writes reals behind the last row.
@@ -154,24 +146,35 @@ contains
     integer, intent(in) :: n_rows                      !! rows in values
     real(dp), intent(in), target :: values(*)          !! row by row
     type(error_t), allocatable, intent(inout) :: error !! exit_file
-    integer(c_int32_t), allocatable :: packed(:)
-    integer(hid_t) :: id, memory, space
-    integer(ip) :: n_bytes
-    integer :: status
+    type(rows_t) :: rows
 
     call check_writable(file, error)
     if (allocated(error)) return
-    n_bytes = 0_ip
+    rows%memory_type = h5kind_to_type(dp, h5_real_kind)
+    rows%plain = c_loc(values)
     if (fills_chunk(series, file, n_rows)) then
-      call pack_chunk(packed, n_bytes, c_loc(values), n_rows*max(1, series%layout%n_columns), 8)
+      call pack_chunk(rows%packed, rows%n_bytes, rows%plain, &
+                      n_rows*max(1, series%layout%n_columns), 8)
     end if
+    call write_rows(series, file, n_rows, rows, error)
+  end subroutine write_reals
+
+  !> Writes rows behind the last one.
+  subroutine write_rows(series, file, n_rows, rows, error)
+    type(series_t), intent(in) :: series               !! grows
+    type(hdf5_file_t), intent(inout) :: file           !! that holds it
+    integer, intent(in) :: n_rows                      !! new rows
+    type(rows_t), intent(in) :: rows                   !! as they are, perhaps also packed
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+    integer(hid_t) :: id, memory, space
+    integer :: status
+
     call grow(series, file, n_rows, id, memory, space, status)
     if (status >= 0) then
-      if (n_bytes > 0_ip) then
-        call put_chunk(id, row_count(series, file) - n_rows, packed, n_bytes, status)
+      if (rows%n_bytes > 0_ip) then
+        call put_chunk(id, row_count(series, file) - n_rows, rows%packed, rows%n_bytes, status)
       else
-        call h5dwrite_f(id, h5kind_to_type(dp, h5_real_kind), c_loc(values), status, &
-                        memory, space)
+        call h5dwrite_f(id, rows%memory_type, rows%plain, status, memory, space)
       end if
     end if
     if (status < 0) then
@@ -180,7 +183,7 @@ contains
     end if
     call h5sclose_f(memory, status)
     call h5sclose_f(space, status)
-  end subroutine write_reals
+  end subroutine write_rows
 
   !> Whether rows fill a new chunk that is stored packed.
   pure logical function fills_chunk(series, file, n_rows)
