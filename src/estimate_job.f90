@@ -5,13 +5,12 @@ module mpm_estimate_job
   use mpm_factor_estimate, only: factor_seconds, measure_flop_rate
   use mpm_increments, only: accept_step, begin_step, schedule_t, start_increment
   use mpm_kinds, only: dp
-  use mpm_linear_method, only: chosen_method, method_recycled
   use mpm_material_points, only: hand_over, unsort_points
   use mpm_model, only: model_t
   use mpm_results_file, only: is_field_output_due
   use mpm_results_size, only: bytes_of_output, bytes_once
   use mpm_run_estimate, only: run_estimate_t
-  use mpm_run_memory, only: check_limit, memory_of_run
+  use mpm_run_memory, only: check_limit, keeps_factors, memory_of_run
   use mpm_run_state, only: run_state_t
   use mpm_solve_job, only: make_body, prepare_increment, stop_times
   use mpm_system, only: body_t, evaluate, evaluation_ok, free_system, open_system, system_t
@@ -69,10 +68,7 @@ contains
     estimate%n_unknowns = system%dofs%n
     estimate%n_nonzeros = system%tangent%nnz
     estimate%memory = memory_of_run(system, model)
-    associate (newton => model%step(1)%newton)
-      estimate%keeps_factors = chosen_method(newton%linear_solver, system%dofs%n, &
-                                             newton%least_recycled) == method_recycled
-    end associate
+    estimate%keeps_factors = keeps_factors(system, model)
   end subroutine note_sizes
 
   !> Times one evaluation with its tangent, and dense products, on one thread: threads that wait for

@@ -12,7 +12,7 @@ module mpm_run_memory
   use mpm_text, only: integer_text, real_text
   implicit none
   private
-  public :: check_limit, check_memory, memory_of_run
+  public :: check_limit, check_memory, keeps_factors, memory_of_run
 
   integer, parameter :: copies = 2          !! of the mesh: as read, and as it moves
   real(dp), parameter :: program = 3.5e7_dp !! code and libraries of the smallest run [bytes]
@@ -109,14 +109,24 @@ contains
         need%pattern = need%pattern + real(4*size(map%position, kind=ip), dp) &
                        + real(4*size(map%node), dp) + real(4*size(map%element_local), dp)
       end if
-      if (chosen_method(model%step(1)%newton%linear_solver, tangent%n, &
-                        model%step(1)%newton%least_recycled) == method_recycled) then
+      if (keeps_factors(system, model)) then
         need%pattern = need%pattern + 8.0_dp*(real(tangent%nnz, dp) &
                                               + directions*real(tangent%n, dp))
       end if
       need%factors = factor_estimate(system%solver, real(tangent%nnz, dp))
     end associate
   end function memory_of_run
+
+  !> Whether the first step keeps factors over corrections.
+  pure logical function keeps_factors(system, model)
+    type(system_t), intent(in) :: system !! its unknowns are numbered
+    type(model_t), intent(in)  :: model
+
+    associate (newton => model%step(1)%newton)
+      keeps_factors = chosen_method(newton%linear_solver, system%dofs%n, &
+                                    newton%least_recycled) == method_recycled
+    end associate
+  end function keeps_factors
 
   !> What points and mesh take, before anything is known of the equations.
   pure function memory_of_model(model) result(need)
