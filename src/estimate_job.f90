@@ -3,6 +3,7 @@ module mpm_estimate_job
   use mpm_assembly, only: assemble_tangent
   use mpm_error, only: error_t
   use mpm_factor_estimate, only: factor_seconds, measure_flop_rate
+  use mpm_linear_solver, only: is_exact
   use mpm_increments, only: accept_step, begin_step, schedule_t, start_increment
   use mpm_kinds, only: dp
   use mpm_material_points, only: hand_over, unsort_points
@@ -96,7 +97,8 @@ contains
     call omp_set_num_threads(n_threads)
     estimate%point_seconds = evaluations*(clock(2) - clock(1)) + clock(3) - clock(2)
     call measure_flop_rate(rate)
-    estimate%factor_seconds = factor_seconds(estimate%memory%factors%flops, rate)
+    estimate%factor_seconds = factor_seconds(estimate%memory%factors%flops, rate, &
+                                             is_exact(system%solver))
   end subroutine note_seconds
 
   !> A shear of all the body, at which most materials flow.

@@ -13,7 +13,7 @@ module mpm_solve_job
   use mpm_kinds, only: dp
   use mpm_limit_load, only: begin_watch, watch_increment
   use mpm_limit_note, only: note_limit_load
-  use mpm_linear_method, only: method_mumps
+  use mpm_linear_method, only: chosen_method, library_of
   use mpm_linear_solver, only: choose_library, is_analysed, solver_memory, solver_ok
   use mpm_material_points, only: hand_over, points_t, sort_points
   use mpm_memory, only: give_back_memory
@@ -326,8 +326,11 @@ contains
     if (allocated(error)) return
     call build_ghost(system%ghost, ghost_factor(body, schedule), body%mesh, body%points, &
                      body%material, system%active)
-    call choose_library(system%solver, model%step(schedule%step)%newton%linear_solver &
-                        == method_mumps)
+    associate (newton => model%step(schedule%step)%newton)
+      call choose_library(system%solver, library_of( &
+        chosen_method(newton%linear_solver, system%dofs%n, newton%least_recycled), &
+        newton%eigenvalues .or. system%recycler%now%needs_double))
+    end associate
     if (is_analysed(system%solver) .and. pattern_is_current(system%map, system%active, &
                                                             system%dofs, system%ghost%node)) return
     call build_pattern(system%tangent, system%map, body%patches, body%mesh, system%dofs, &

@@ -1,5 +1,7 @@
 """Linear solvers of *CONTROLS: one answer, and the refusal of the one that is not there."""
 
+import re
+
 import numpy as np
 import pytest
 from restart_runs import CUBE, PLATE, STRIP, datasets
@@ -27,6 +29,30 @@ ALL, GRAV, 1.0, 0, -1
 *END STEP
 """
 
+BEAM = """\
+*GENERATE, TYPE=BOX, DIMENSION=2, ORDER=QUADRATIC
+X, 0, 300, 300
+Y, 0, 1, 1
+*FORMULATION, TYPE=FBAR PATCH
+*PATCH, SOURCE=QUADRATIC
+*MATERIAL, NAME=STEEL
+*DENSITY
+1.0
+*ELASTIC
+1E15, 0.3
+*MATERIAL POINTS, ELSET=ALL, MATERIAL=STEEL, PER ELEMENT=4
+*STEP
+*STATIC, DIRECT
+0.5, 1
+*BOUNDARY
+X0, 1, 2
+*DLOAD
+ALL, GRAV, 1.0, 0, -1
+*HISTORY, NSET=X1
+U
+*END STEP
+"""
+
 
 def solved_by(deck, solver):
     first, rest = deck.split("*STEP", 1)
@@ -44,8 +70,16 @@ def history_of(run_tessera, tmp_path, deck, solver):
     run = run_tessera(solved_by(deck, solver), "-q", "-o", solver)
     assert (run.code, run.stderr) == (0, "")
     log = (tmp_path / solver / "job.log").read_text()
-    assert f"linear solver: {solver}\n" in log
+    assert re.search(f"linear solver: {solver}(; factors .*)?\n", log)
     return datasets(tmp_path / solver / "job.vtkhdf"), log
+
+
+def compare_histories(found, expected):
+    names = [name for name in expected if name.startswith("tessera/history/")]
+    assert len(names) > 2
+    for name in names:
+        limit = 1e-8 * max(np.abs(expected[name]).max(), 1e-30)
+        assert np.abs(found[name] - expected[name]).max() <= limit, name
 
 
 @pytest.mark.parametrize(
@@ -60,11 +94,23 @@ def test_solvers_agree_in_every_value_of_the_history(run_tessera, tmp_path, mump
     assert "gmres" not in log
     other, log = history_of(run_tessera, tmp_path, deck, solver)
     assert ("gmres" in log) == (solver == "RECYCLED")
-    names = [name for name in direct if name.startswith("tessera/history/")]
-    assert len(names) > 2
-    for name in names:
-        limit = 1e-8 * max(np.abs(direct[name]).max(), 1e-30)
-        assert np.abs(other[name] - direct[name]).max() <= limit, name
+    compare_histories(other, direct)
+
+
+def test_factors_that_are_kept_are_of_single_precision(run_tessera, tmp_path, mumps):
+    table, log = history_of(run_tessera, tmp_path, STRIP, "RECYCLED")
+    assert ("factors that are kept: single precision, by MUMPS" in log) == mumps
+    new = table["tessera/iterations/new_factors"] == 1
+    assert (table["tessera/iterations/gmres"][new] > 0).all() == mumps
+    assert "double precision" not in log
+
+
+def test_slender_bodies_need_double_precision(run_tessera, tmp_path, mumps):
+    """Pivots of a beam 300 times as long as thick say nothing in single precision."""
+    found, log = history_of(run_tessera, tmp_path, BEAM, "RECYCLED")
+    assert log.count("new factors, of double precision from now on") == (1 if mumps else 0)
+    direct, _ = history_of(run_tessera, tmp_path, BEAM, "DIRECT")
+    compare_histories(found, direct)
 
 
 def test_recycling_makes_few_factors(run_tessera, tmp_path):

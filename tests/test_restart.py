@@ -331,7 +331,7 @@ def test_damaged_files_are_refused(run_tessera, tmp_path):
         data[:-1]: "is cut short",
         data[: len(data) // 2]: "is cut short",
         data[:-9] + bytes([data[-9] ^ 4]) + data[-8:]: "is damaged",
-        data.replace(b"format 2", b"format 9", 1): "has format '9'",
+        data.replace(b"format 3", b"format 9", 1): "has format '9'",
         b"*HEADING\n": "is no restart file",
     }
     for content, message in cases.items():
@@ -350,7 +350,7 @@ def test_damaged_files_are_refused(run_tessera, tmp_path):
 def sealed(path):
     """Makes the seal of a restart file right again."""
     data = path.read_bytes()[512:]
-    seal = "Tessera restart file\nformat 2\n"
+    seal = "Tessera restart file\nformat 3\n"
     seal += f"length {len(data)}\nchecksum {zlib.crc32(data):08X}\n"
     path.write_bytes(seal.encode().ljust(512) + data)
 

@@ -9,7 +9,7 @@ set -eu
 
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
 packages="ca-certificates cmake gcc gfortran libc6-dev libhdf5-dev libmetis-dev
-  libopenblas-dev libsuitesparse-dev make python3 python3-venv zlib1g-dev"
+  libmumps-seq-dev libopenblas-dev libsuitesparse-dev make python3 python3-venv zlib1g-dev"
 
 say() {
   printf '%s\n' "setup: $*" >&2

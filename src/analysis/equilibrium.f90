@@ -56,6 +56,8 @@ module mpm_equilibrium
     real(dp), allocatable :: seconds(:, :) !! (5, n_iterations)  CPU: kinematics, stress, assembly, factorisation, solve [s]
     integer, allocatable  :: gmres(:)      !! (n_iterations)  iterations of GMRES, 0 = none
     logical, allocatable  :: is_new(:)     !! (n_iterations)  the factors are of this tangent
+    integer :: left_single = 0             !! iteration from which single precision does not serve
+                                           !! any more, 0 if there is none
     integer :: worst_node = 0              !! node of the largest residual
     integer :: worst_element = 0           !! inverted element or element of a failed point, 0 if none
     integer :: worst_point = 0             !! id of a failed point, 0 if none
@@ -226,6 +228,7 @@ contains
     real(dp), allocatable :: force(:, :), load(:), rhs(:)
     real(dp) :: clock(2)
     integer :: outcome
+    logical :: needed_double
 
     report%n_iterations = iteration
     if (.not. system%sums%has_moduli) &
@@ -248,6 +251,7 @@ contains
     call choose_accuracy(newton%forcing, norm2(rhs), merge(newton%norm, 0.0_dp, &
                          iteration > 1 .or. newton%moved), report%residual(iteration - 1), &
                          report%n_plastic > 0, settings%tolerance)
+    needed_double = system%recycler%now%needs_double
     call solve_tangent(newton%x, system, rhs, newton%forcing%accuracy, &
                        chosen_method(settings%linear_solver, system%dofs%n, &
                                      settings%least_recycled), outcome)
@@ -256,6 +260,7 @@ contains
                                      + [clock(2) - clock(1), system%recycler%seconds]
     report%gmres(iteration) = system%recycler%n_iterations
     report%is_new(iteration) = system%recycler%is_new
+    if (system%recycler%now%needs_double .and. .not. needed_double) report%left_single = iteration
     select case (outcome)
     case (solver_ok)
       allocate (load, mold=newton%x)

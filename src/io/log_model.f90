@@ -3,6 +3,7 @@ module mpm_log_model
   use mpm_initial_stress, only: initial_stress_t
   use mpm_kinds, only: dp
   use mpm_linear_method, only: method_automatic, method_name
+  use mpm_linear_solver, only: has_mumps
   use mpm_material, only: law_von_mises, material_t
   use mpm_mesh, only: face_set_t, mesh_t
   use mpm_mesh_motion, only: mesh_motion_t
@@ -154,6 +155,8 @@ contains
     case default
       text = method_name(method)
     end select
+    if (index(text, "RECYCLED") > 0 .and. has_mumps()) &
+      text = text//"; factors that are kept: single precision, by MUMPS"
   end function solver_text
 
   !> The largest displacement that a geostatic step accepts.

@@ -21,7 +21,7 @@ module mpm_record_file
 
   integer, parameter :: seal_length = 512      !! bytes in front of the HDF5 part
   integer, parameter :: block_length = 1048576 !! bytes read at a time
-  integer, parameter :: format_version = 2     !! of the restart file
+  integer, parameter :: format_version = 3     !! of the restart file
   character(*), parameter :: title = "Tessera restart file"
 
   !> An open file.

@@ -86,6 +86,7 @@ contains
     character(:), allocatable :: pattern
 
     call exchange_logical(record, "factors_are_there", factors%is_there, error)
+    call exchange_logical(record, "factors_need_double", factors%needs_double, error)
     if (allocated(error) .or. .not. factors%is_there) return
     pattern = factors%pattern
     call exchange_text(record, "factors_pattern", pattern, error)

@@ -95,22 +95,32 @@ contains
 
     text = ""
     if (factors%entries > 0.0_dp) then
-      text = row("nonzeros of the factors", count_text(factors%entries)//", at most "// &
-                 count_text(factors%entries_bound))// &
-             row("flops of a factorisation", short_text(factors%flops)//", at most "// &
-                 short_text(factors%flops_bound))
+      text = row("nonzeros of the factors", count_text(factors%entries)// &
+                 bound_text(factors, count_text(factors%entries_bound)))// &
+             row("flops of a factorisation", short_text(factors%flops)// &
+                 bound_text(factors, short_text(factors%flops_bound)))
     end if
-    text = text//row("memory of a factorisation", size_text(factors%peak)//", at most "// &
-               size_text(factors%peak_bound))
+    text = text//row("memory of a factorisation", size_text(factors%peak)// &
+                     bound_text(factors, size_text(factors%peak_bound)))
   end function factors_text
+
+  !> A bound behind what is expected, where one is known.
+  pure function bound_text(factors, bound) result(text)
+    type(factor_estimate_t), intent(in) :: factors
+    character(*), intent(in) :: bound
+    character(:), allocatable :: text
+
+    text = ""
+    if (factors%has_bounds) text = ", at most "//bound
+  end function bound_text
 
   !> Memory of the run and its parts.
   pure function memory_text(need) result(text)
     type(memory_need_t), intent(in) :: need
     character(:), allocatable :: text
 
-    text = row("memory of the run", size_text(expected_peak(need))//", at most "// &
-               size_text(peak_bound(need)))// &
+    text = row("memory of the run", size_text(expected_peak(need))// &
+               bound_text(need%factors, size_text(peak_bound(need))))// &
            row("  program", size_text(need%program))// &
            row("  points", size_text(need%points))// &
            row("  mesh", size_text(need%mesh))// &

@@ -179,6 +179,7 @@ contains
     if (i > size(report%gmres) .or. all(report%gmres == 0)) return
     if (report%gmres(i) > 0) text = " gmres "//integer_text(report%gmres(i))
     if (report%is_new(i)) text = text//" new factors"
+    if (report%left_single == i) text = text//", of double precision from now on"
   end function linear_text
 
   !> Where an attempt failed.

@@ -1,13 +1,14 @@
 !> Ways to solve the linear system of a correction (LINEAR SOLVER of *CONTROLS).
 module mpm_linear_method
+  use mpm_linear_solver, only: has_mumps, library_mumps, library_single, library_umfpack
   implicit none
   private
-  public :: chosen_method, least_recycled, method_name, method_of_name
+  public :: chosen_method, least_recycled, library_of, method_name, method_of_name
   public :: method_automatic, method_direct, method_mumps, method_recycled
 
   integer, parameter :: method_automatic = 0 !! by the number of unknowns
   integer, parameter :: method_direct = 1    !! UMFPACK, new factors for every correction
-  integer, parameter :: method_recycled = 2  !! UMFPACK, factors that are kept, and GMRES
+  integer, parameter :: method_recycled = 2  !! factors that are kept, and GMRES
   integer, parameter :: method_mumps = 3     !! MUMPS, new factors for every correction
 
   integer, parameter :: enough = 2000 !! unknowns in 3-D from which recycling pays
@@ -39,6 +40,16 @@ contains
       n = merge(enough, many, equal_increments)
     end if
   end function least_recycled
+
+  !> The library that makes the factors of a method.
+  pure integer function library_of(method, exactly) result(library)
+    integer, intent(in) :: method  !! method_*, not automatic
+    logical, intent(in) :: exactly !! factors of single precision do not serve
+
+    library = library_umfpack
+    if (method == method_mumps) library = library_mumps
+    if (method == method_recycled .and. has_mumps() .and. .not. exactly) library = library_single
+  end function library_of
 
   !> Name of a method in the deck.
   pure function method_name(method) result(name)

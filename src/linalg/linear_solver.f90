@@ -6,8 +6,8 @@ module mpm_linear_solver
   use mpm_csc_matrix, only: csc_matrix_t
   use mpm_kinds, only: dp, ip
   use mpm_memory, only: has_room
-  use mpm_mumps_binding, only: mumps_analyse, mumps_close, mumps_factorize, mumps_is_there, &
-    mumps_ok, mumps_singular, mumps_solve
+  use mpm_mumps_binding, only: mumps_analyse, mumps_bytes, mumps_close, mumps_entries, &
+    mumps_factorize, mumps_flops, mumps_found, mumps_is_there, mumps_ok, mumps_singular, mumps_solve
   use mpm_openblas_binding, only: dtrsm, openblas_set_num_threads
   use mpm_umfpack_binding, only: control_initial, control_ordering, control_refinements, &
     control_strategy, info_entries, info_flops, info_peak, info_peak_estimate, info_rcond, &
@@ -18,13 +18,19 @@ module mpm_linear_solver
   implicit none
   private
   public :: linear_solver_t, analyse, factorize, solve, free_solver
-  public :: choose_library, has_factors, has_mumps, is_analysed, work_of_factors, work_of_solution
+  public :: choose_library, has_factors, has_mumps, is_analysed, is_exact, work_of_factors, &
+            work_of_solution
+  public :: library_mumps, library_single, library_umfpack
   public :: solver_ok, solver_singular, solver_memory, solver_not_finite
 
   integer, parameter :: solver_ok = 0       !! done
   integer, parameter :: solver_singular = 1 !! matrix singular to machine precision, or not finite
   integer, parameter :: solver_memory = 2   !! out of memory
   integer, parameter :: solver_not_finite = 3 !! the solution holds infinity or no numbers
+
+  integer, parameter :: library_umfpack = 0 !! UMFPACK
+  integer, parameter :: library_mumps = 1   !! MUMPS
+  integer, parameter :: library_single = 2  !! MUMPS with factors of single precision: preconditioners
 
   integer(ip), parameter :: blas_buffer = 135000000_ip !! a little more than OpenBLAS takes [bytes]
   real(dp), parameter :: first_units = 1.0e6_dp !! memory that a factorisation begins with; it grows.
@@ -37,12 +43,15 @@ module mpm_linear_solver
     type(c_ptr) :: symbolic = c_null_ptr                   !! analysis of the pattern
     type(c_ptr) :: numeric = c_null_ptr                    !! factors
     type(c_ptr) :: mumps = c_null_ptr                      !! analysis and factors of MUMPS
-    logical     :: by_mumps = .false.                      !! MUMPS in place of UMFPACK
+    logical     :: has_mumps_factors = .false.             !! there are factors of MUMPS
+    integer     :: library = library_umfpack               !! library_*
     real(dp)    :: control(0:umfpack_control - 1) = 0.0_dp !! controls of UMFPACK
     real(dp)    :: info(0:umfpack_info - 1) = 0.0_dp       !! statistics of UMFPACK's last call
     real(dp)    :: memory = 0.0_dp      !! estimate for a factorisation by the last analysis, 0 if
                                         !! unknown [bytes]
-    real(dp)    :: most_memory = 0.0_dp !! of all factorisations so far, as UMFPACK reports [bytes]
+    real(dp)    :: most_memory = 0.0_dp !! of all factorisations so far, as the library reports [bytes]
+    real(dp)    :: entries = 0.0_dp     !! of the factors; before there are any, of MUMPS expected
+    real(dp)    :: flops = 0.0_dp       !! of the factorisation, likewise
     real(dp)    :: rcond = 1.0_dp       !! smallest over largest pivot, last factorisation [-]
     integer     :: n_analyses = 0       !! analyses so far
     integer     :: n_factorizations = 0 !! factorisations so far
@@ -65,21 +74,20 @@ contains
     type(csc_matrix_t), intent(in) :: matrix       !! pattern; values only need to exist
     integer, intent(out) :: outcome                !! solver_*
     integer(ip) :: status
-    integer(c_int) :: code
 
     call free_solver(solver)
     outcome = solver_ok
     solver%memory = 0.0_dp
+    solver%entries = 0.0_dp
+    solver%flops = 0.0_dp
     if (matrix%n == 0) return
     ! More BLAS threads would make sums depend on their number and fight with OpenMP.
     call openblas_set_num_threads(1_c_int)
     call take_blas_buffer(outcome)
     if (outcome /= solver_ok) return
     solver%n_analyses = solver%n_analyses + 1
-    if (solver%by_mumps) then
-      solver%mumps = mumps_analyse(int(matrix%n, c_int), int(matrix%nnz, c_long), &
-                                   matrix%col_ptr, matrix%row, code, solver%memory)
-      outcome = outcome_of_mumps(code)
+    if (solver%library /= library_umfpack) then
+      call analyse_by_mumps(solver, matrix, outcome)
       return
     end if
     call umfpack_dl_defaults(solver%control)
@@ -94,6 +102,23 @@ contains
     if (outcome == solver_ok) solver%memory = solver%info(info_peak_estimate) &
                                               *solver%info(info_unit)
   end subroutine analyse
+
+  !> The same by MUMPS.
+  subroutine analyse_by_mumps(solver, matrix, outcome)
+    type(linear_solver_t), intent(inout) :: solver !! receives the analysis
+    type(csc_matrix_t), intent(in) :: matrix       !! pattern
+    integer, intent(out) :: outcome                !! solver_*
+    real(c_double) :: found(0:mumps_found - 1)
+    integer(c_int) :: code
+
+    solver%mumps = mumps_analyse(merge(1_c_int, 0_c_int, solver%library == library_single), &
+                                 int(matrix%n, c_int), int(matrix%nnz, c_long), matrix%col_ptr, &
+                                 matrix%row, code, found)
+    solver%memory = found(mumps_bytes)
+    solver%entries = found(mumps_entries)
+    solver%flops = found(mumps_flops)
+    outcome = outcome_of_mumps(code)
+  end subroutine analyse_by_mumps
 
   !> Lets OpenBLAS take its working memory as long as there is some: it waits for ever when it needs
   !! it and there is none. It keeps what it has got.
@@ -128,17 +153,33 @@ contains
     outcome = solver_singular
     if (.not. all(ieee_is_finite(matrix%val))) return
     solver%n_factorizations = solver%n_factorizations + 1
-    if (solver%by_mumps) then
-      outcome = outcome_of_mumps(mumps_factorize(solver%mumps, matrix%val, solver%rcond))
+    if (solver%library /= library_umfpack) then
+      call factorize_by_mumps(solver, matrix, outcome)
     else
       status = umfpack_dl_numeric(matrix%col_ptr, matrix%row, matrix%val, solver%symbolic, &
                                   solver%numeric, solver%control, solver%info)
       solver%rcond = solver%info(info_rcond)
+      solver%entries = solver%info(info_entries)
+      solver%flops = solver%info(info_flops)
       solver%most_memory = max(solver%most_memory, solver%info(info_peak)*solver%info(info_unit))
       outcome = outcome_of(status)
     end if
     if (outcome == solver_ok .and. .not. solver%rcond > smallest_rcond) outcome = solver_singular
   end subroutine factorize
+
+  !> The same by MUMPS.
+  subroutine factorize_by_mumps(solver, matrix, outcome)
+    type(linear_solver_t), intent(inout) :: solver !! analysed; receives the factors
+    type(csc_matrix_t), intent(in) :: matrix       !! as in `factorize`
+    integer, intent(out) :: outcome                !! solver_*
+    real(c_double) :: found(0:mumps_found - 1)
+
+    outcome = outcome_of_mumps(mumps_factorize(solver%mumps, matrix%val, solver%rcond, found))
+    solver%has_mumps_factors = outcome == solver_ok
+    solver%entries = found(mumps_entries)
+    solver%flops = found(mumps_flops)
+    solver%most_memory = max(solver%most_memory, found(mumps_bytes))
+  end subroutine factorize_by_mumps
 
   !> Solves A x = rhs with the factors of the last factorisation.
   subroutine solve(solver, matrix, rhs, x, outcome)
@@ -151,7 +192,7 @@ contains
 
     outcome = solver_ok
     if (matrix%n == 0) return
-    if (solver%by_mumps) then
+    if (solver%library /= library_umfpack) then
       x = rhs
       outcome = outcome_of_mumps(mumps_solve(solver%mumps, x))
     else
@@ -175,8 +216,15 @@ contains
     type(linear_solver_t), intent(in) :: solver
     logical :: are_there
 
-    are_there = c_associated(solver%numeric)
+    are_there = c_associated(solver%numeric) .or. solver%has_mumps_factors
   end function has_factors
+
+  !> Whether a solution has all digits that the matrix allows.
+  pure logical function is_exact(solver)
+    type(linear_solver_t), intent(in) :: solver
+
+    is_exact = solver%library /= library_single
+  end function is_exact
 
   !> Work of the last factorisation, counted and not timed, so that it is the same in every run.
   !! Source: theory.md (15h).
@@ -184,8 +232,7 @@ contains
     type(linear_solver_t), intent(in) :: solver !! factorised
     type(csc_matrix_t), intent(in) :: matrix
 
-    work = solver%info(info_flops)/flops_per_entry + passes*solver%info(info_entries) &
-           + per_column*real(matrix%n, dp)
+    work = solver%flops/flops_per_entry + passes*solver%entries + per_column*real(matrix%n, dp)
   end function work_of_factors
 
   !> Work of a solution with the factors and a product with the matrix. Source: theory.md (15h).
@@ -193,7 +240,7 @@ contains
     type(linear_solver_t), intent(in) :: solver !! factorised
     type(csc_matrix_t), intent(in) :: matrix
 
-    work = solver%info(info_entries) + real(matrix%nnz, dp)
+    work = solver%entries + real(matrix%nnz, dp)
   end function work_of_solution
 
   !> Releases the handles; harmless when there are none. Counts stay, statistics go.
@@ -207,20 +254,21 @@ contains
     solver%symbolic = c_null_ptr
     solver%info = 0.0_dp
     solver%mumps = c_null_ptr
+    solver%has_mumps_factors = .false.
   end subroutine free_solver
 
   !> Whether this program was built with MUMPS.
-  logical function has_mumps() result(has)
+  pure logical function has_mumps() result(has)
     has = mumps_is_there() == 1_c_int
   end function has_mumps
 
-  !> Takes MUMPS or UMFPACK from now on; what the other one has made is released.
-  subroutine choose_library(solver, by_mumps)
+  !> Takes a library from now on; what another one has made is released.
+  subroutine choose_library(solver, library)
     type(linear_solver_t), intent(inout) :: solver !! without analysis if it is another one
-    logical, intent(in) :: by_mumps                !! only where has_mumps()
+    integer, intent(in) :: library                 !! library_*; MUMPS only where has_mumps()
 
-    if (solver%by_mumps .neqv. by_mumps) call free_solver(solver)
-    solver%by_mumps = by_mumps
+    if (solver%library /= library) call free_solver(solver)
+    solver%library = library
   end subroutine choose_library
 
   !> Outcome that belongs to a status of MUMPS.

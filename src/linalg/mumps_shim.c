@@ -1,12 +1,16 @@
-/* A few calls of MUMPS behind plain arguments, and the same without MUMPS: then mumps_is_there
-   tells so. No policy here; statuses are those of mumps_binding.f90. */
+/* A few calls of MUMPS, in double and in single precision, behind plain arguments, and the same
+   without MUMPS: then mumps_is_there tells so. No policy here; statuses are those of
+   mumps_binding.f90. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { OK = 0, SINGULAR = 1, NO_MEMORY = 2 };
+enum { BYTES = 0, ENTRIES = 1, FLOPS = 2, N_FOUND = 3 }; /* what a call tells */
 
 #ifdef TESSERA_MUMPS
 #include <dmumps_c.h>
+#include <smumps_c.h>
 
 #define ICNTL(i) icntl[(i) - 1]
 #define INFOG(i) infog[(i) - 1]
@@ -15,22 +19,43 @@ enum { OK = 0, SINGULAR = 1, NO_MEMORY = 2 };
 enum { INITIALISE = -1, END = -2, ANALYSE = 1, FACTORIZE = 2, SOLVE = 3 };
 enum { METIS = 5, MOST_ROOM = 1000, USE_COMM_WORLD = -987654 };
 
-static int status_of(const DMUMPS_STRUC_C *id)
+/* MUMPS tells large counts as negative millions. */
+static double count_of(int told)
 {
-    switch (id->INFOG(1)) {
-    case -5: case -7: case -8: case -9: case -11: case -13: case -14: case -15: case -17: case -19:
-    case -20: case -51:
-        return NO_MEMORY;
-    default:
-        return id->INFOG(1) < 0 ? SINGULAR : OK;
-    }
+    return told < 0 ? -1.0e6 * told : told;
 }
 
-static void call(DMUMPS_STRUC_C *id, int job)
+/* The power of two above all values; 1 for zeros. */
+static double power_above(long n, const double *value)
 {
-    id->job = job;
-    dmumps_c(id);
+    double largest = 0.0;
+    int exponent;
+    for (long i = 0; i < n; i++)
+        largest = fmax(largest, fabs(value[i]));
+    if (!(largest > 0.0) || !isfinite(largest))
+        return 1.0;
+    frexp(largest, &exponent);
+    return ldexp(1.0, exponent < 1000 ? exponent : 1000);
 }
+
+#define REAL double
+#define STRUC DMUMPS_STRUC_C
+#define MUMPS dmumps_c
+#define NAME(x) double_##x
+#include "mumps_calls.h"
+
+#define REAL float
+#define STRUC SMUMPS_STRUC_C
+#define MUMPS smumps_c
+#define NAME(x) single_##x
+#include "mumps_calls.h"
+
+/* One of the two, and the scale of the matrix that was factorised. */
+typedef struct {
+    DMUMPS_STRUC_C *in_double;
+    SMUMPS_STRUC_C *in_single;
+    double scale;
+} solver_t;
 
 int tessera_mumps_is_there(void)
 {
@@ -39,84 +64,54 @@ int tessera_mumps_is_there(void)
 
 void tessera_mumps_close(void *handle)
 {
-    DMUMPS_STRUC_C *id = handle;
-    if (id == NULL)
+    solver_t *solver = handle;
+    if (solver == NULL)
         return;
-    call(id, END);
-    free(id->irn);
-    free(id->jcn);
-    free(id);
+    if (solver->in_double != NULL)
+        double_close(solver->in_double);
+    if (solver->in_single != NULL)
+        single_close(solver->in_single);
+    free(solver);
 }
 
 /* Analyses a pattern of compressed columns, indices from 0; NULL when that fails. */
-void *tessera_mumps_analyse(int n, long nnz, const long *col_ptr, const long *row, int *status,
-                            double *bytes)
+void *tessera_mumps_analyse(int single, int n, long nnz, const long *col_ptr, const long *row,
+                            int *status, double *found)
 {
-    DMUMPS_STRUC_C *id = calloc(1, sizeof *id);
+    solver_t *solver = calloc(1, sizeof *solver);
+    memset(found, 0, N_FOUND * sizeof *found);
     *status = NO_MEMORY;
-    if (id == NULL)
+    if (solver == NULL)
         return NULL;
-    id->sym = 0;
-    id->par = 1;
-    id->comm_fortran = USE_COMM_WORLD;
-    call(id, INITIALISE);
-    for (int stream = 1; stream <= 4; stream++)
-        id->ICNTL(stream) = 0;  /* no output */
-    id->ICNTL(6) = 0;           /* the diagonal stays where it is */
-    id->ICNTL(7) = METIS;
-    id->ICNTL(10) = 0;          /* no refinement */
-    id->ICNTL(24) = 1;          /* zero pivots are counted */
-    id->n = n;
-    id->nnz = nnz;
-    id->irn = malloc((size_t)nnz * sizeof *id->irn);
-    id->jcn = malloc((size_t)nnz * sizeof *id->jcn);
-    if (id->irn != NULL && id->jcn != NULL) {
-        for (int j = 0; j < n; j++)
-            for (long k = col_ptr[j]; k < col_ptr[j + 1]; k++) {
-                id->irn[k] = (MUMPS_INT)row[k] + 1;
-                id->jcn[k] = j + 1;
-            }
-        call(id, ANALYSE);
-        *status = status_of(id);
-    }
-    *bytes = 1.0e6 * (id->INFOG(16) > 0 ? id->INFOG(16) : 1); /* whole megabytes */
+    if (single)
+        solver->in_single = single_analyse(n, nnz, col_ptr, row, status, found);
+    else
+        solver->in_double = double_analyse(n, nnz, col_ptr, row, status, found);
     if (*status == OK)
-        return id;
-    tessera_mumps_close(id);
+        return solver;
+    free(solver);
     return NULL;
 }
 
 /* Factorises values in the order of the pattern; rcond is smallest over largest pivot. */
-int tessera_mumps_factorize(void *handle, double *val, double *rcond)
+int tessera_mumps_factorize(void *handle, const double *val, double *rcond, double *found)
 {
-    DMUMPS_STRUC_C *id = handle;
-    int status;
-    id->a = val;
-    do {
-        call(id, FACTORIZE);
-        /* -8 and -9: pivoting needs more room than foreseen */
-        if (id->INFOG(1) != -8 && id->INFOG(1) != -9)
-            break;
-        id->ICNTL(14) *= 2;
-    } while (id->ICNTL(14) <= MOST_ROOM);
-    id->a = NULL;
-    status = status_of(id);
-    *rcond = 0.0;
-    if (status == OK && id->INFOG(28) > 0)
-        status = SINGULAR;
-    if (status == OK && id->RINFOG(20) > 0.0)
-        *rcond = id->RINFOG(19) / id->RINFOG(20);
-    return status;
+    solver_t *solver = handle;
+    if (solver->in_double != NULL) {
+        solver->scale = power_above(solver->in_double->nnz, val);
+        return double_factorize(solver->in_double, val, solver->scale, rcond, found);
+    }
+    solver->scale = power_above(solver->in_single->nnz, val);
+    return single_factorize(solver->in_single, val, solver->scale, rcond, found);
 }
 
 /* Solves with the factors; x holds the right-hand side before. */
 int tessera_mumps_solve(void *handle, double *x)
 {
-    DMUMPS_STRUC_C *id = handle;
-    id->rhs = x;
-    call(id, SOLVE);
-    id->rhs = NULL;
-    return status_of(id);
+    solver_t *solver = handle;
+    if (solver->in_double != NULL)
+        return double_solve(solver->in_double, solver->scale, x);
+    return single_solve(solver->in_single, solver->scale, x);
 }
 
 #else
@@ -131,18 +126,19 @@ void tessera_mumps_close(void *handle)
     (void)handle;
 }
 
-void *tessera_mumps_analyse(int n, long nnz, const long *col_ptr, const long *row, int *status,
-                            double *bytes)
+void *tessera_mumps_analyse(int single, int n, long nnz, const long *col_ptr, const long *row,
+                            int *status, double *found)
 {
-    (void)n, (void)nnz, (void)col_ptr, (void)row;
+    (void)single, (void)n, (void)nnz, (void)col_ptr, (void)row;
+    memset(found, 0, N_FOUND * sizeof *found);
     *status = NO_MEMORY;
-    *bytes = 0.0;
     return NULL;
 }
 
-int tessera_mumps_factorize(void *handle, double *val, double *rcond)
+int tessera_mumps_factorize(void *handle, const double *val, double *rcond, double *found)
 {
     (void)handle, (void)val;
+    memset(found, 0, N_FOUND * sizeof *found);
     *rcond = 0.0;
     return SINGULAR;
 }

@@ -1,6 +1,9 @@
 !> Factors that are kept over a sequence of similar matrices, as the preconditioner of GMRES, and
 !! the rule when to make new ones. Source: theory.md (15h), (15i).
 !!
+!! They may be of single precision, which takes half the time and memory. Where that does not serve,
+!! UMFPACK makes them from then on.
+!!
 !! Every decision rests on counts, none on time: a run that is repeated, or goes on after a restart,
 !! makes new factors at the same places.
 module mpm_recycled_solver
@@ -8,8 +11,8 @@ module mpm_recycled_solver
   use mpm_csc_matrix, only: csc_matrix_t, zero_values
   use mpm_gmres, only: gmres_converged, gmres_t, open_gmres, solve_by_gmres
   use mpm_kinds, only: dp, ip
-  use mpm_linear_solver, only: analyse, factorize, has_factors, is_analysed, linear_solver_t, &
-    solve, solver_ok, work_of_factors, work_of_solution
+  use mpm_linear_solver, only: analyse, choose_library, factorize, has_factors, is_analysed, &
+    is_exact, library_umfpack, linear_solver_t, solve, solver_ok, work_of_factors, work_of_solution
   implicit none
   private
   public :: accuracy_t, factor_memory_t, recycler_t
@@ -19,6 +22,8 @@ module mpm_recycled_solver
   integer, parameter  :: n_largest = 40            !! directions of GMRES between two restarts
   real(dp), parameter :: growth = 1.5_dp           !! of the work per digit until an increment ends
   real(dp), parameter :: fewest_digits = 1.0e-3_dp !! that count as asked for
+  real(dp), parameter :: least_ratio = 1.0e-5_dp   !! of pivots of single precision: below it they
+                                                   !! do not tell whether the matrix is singular
 
   !> What is wanted of a solution.
   type :: accuracy_t
@@ -31,6 +36,7 @@ module mpm_recycled_solver
   !> Which factors are in use and what they have cost; enough to make them again.
   type :: factor_memory_t
     logical  :: is_there = .false.   !! there are factors, or values to make them from
+    logical  :: needs_double = .false. !! single precision did not serve
     integer  :: n = 0                !! equations
     integer  :: nnz = 0              !! entries
     character(8) :: pattern = ""     !! checksum of the pattern
@@ -47,7 +53,7 @@ module mpm_recycled_solver
                                       !! as long as those are the same
     logical  :: changed = .false.     !! now has other values than accepted
     type(gmres_t) :: gmres            !! work space
-    integer  :: n_iterations = 0      !! of GMRES in the last solution
+    integer  :: n_iterations = 0      !! of GMRES in the last solution, with old and new factors
     logical  :: is_new = .false.      !! the factors are of the matrix solved last
     real(dp) :: seconds(2) = 0.0_dp   !! CPU of the last solution: factorisation, the rest [s]
   end type recycler_t
@@ -93,8 +99,8 @@ contains
     real(dp), intent(in) :: rhs(:)                 !! (n)
     type(accuracy_t), intent(in) :: accuracy
     integer, intent(out) :: outcome                !! solver_*
-    real(dp) :: clock(3), digits, norm
-    logical  :: solved
+    real(dp) :: clock(2), digits, norm
+    logical  :: solved !! by GMRES
 
     recycler%seconds = 0.0_dp
     recycler%n_iterations = 0
@@ -109,19 +115,38 @@ contains
     if (norm > 0.0_dp .and. serve_on(recycler%now, solver, matrix, accuracy)) then
       call iterate(recycler, x, solver, matrix, rhs, accuracy%goal, solved)
     end if
-    call cpu_time(clock(2))
-    if (.not. solved) call renew_factors(recycler, solver, matrix, outcome)
-    call cpu_time(clock(3))
-    recycler%seconds = [clock(3) - clock(2), clock(2) - clock(1)]
-    if (outcome == solver_ok .and. .not. solved) then
-      call solve(solver, matrix, rhs, x, outcome)
-      recycler%now%work = recycler%now%work + work_of_solution(solver, matrix)
-      call cpu_time(clock(1))
-      recycler%seconds(2) = recycler%seconds(2) + clock(1) - clock(3)
+    if (.not. solved) then
+      call solve_afresh(recycler, x, solver, matrix, rhs, accuracy%goal, outcome)
+      solved = outcome == solver_ok .and. .not. is_exact(solver)
     end if
+    call cpu_time(clock(2))
+    recycler%seconds(2) = clock(2) - clock(1) - recycler%seconds(1)
     recycler%now%digits = recycler%now%digits + digits
-    if (solved) recycler%now%rate = recycler%n_iterations*work_of_solution(solver, matrix)/digits
+    if (solved) recycler%now%rate = recycler%gmres%n_iterations*work_of_solution(solver, matrix) &
+                                    /digits
   end subroutine solve_recycled
+
+  !> Solves with factors of the matrix itself; those of single precision need some iterations.
+  subroutine solve_afresh(recycler, x, solver, matrix, rhs, goal, outcome)
+    type(recycler_t), intent(inout) :: recycler
+    real(dp), intent(out) :: x(:)                  !! (n)
+    type(linear_solver_t), intent(inout) :: solver !! prepared
+    type(csc_matrix_t), intent(in) :: matrix       !! A
+    real(dp), intent(in) :: rhs(:)                 !! (n)
+    real(dp), intent(in) :: goal                   !! norm of the residual
+    integer, intent(out) :: outcome                !! solver_*
+    logical :: solved
+
+    call renew_factors(recycler, solver, matrix, outcome)
+    if (outcome == solver_ok .and. .not. is_exact(solver)) then
+      call iterate(recycler, x, solver, matrix, rhs, goal, solved)
+      if (solved) return
+      call leave_single(recycler, solver, matrix, outcome)
+    end if
+    if (outcome /= solver_ok) return
+    call solve(solver, matrix, rhs, x, outcome)
+    recycler%now%work = recycler%now%work + work_of_solution(solver, matrix)
+  end subroutine solve_afresh
 
   !> Whether the factors in use serve one more solution. Source: theory.md (15i).
   pure function serve_on(factors, solver, matrix, accuracy) result(serves)
@@ -155,27 +180,58 @@ contains
     if (recycler%gmres%n /= matrix%n) call open_gmres(recycler%gmres, matrix, n_largest)
     recycler%gmres%n_iterations = max(1, int(work_of_factors(solver, matrix)/once))
     call solve_by_gmres(recycler%gmres, x, solver, matrix, rhs, goal, outcome)
-    recycler%n_iterations = recycler%gmres%n_iterations
-    recycler%now%work = recycler%now%work + recycler%n_iterations*once
+    recycler%n_iterations = recycler%n_iterations + recycler%gmres%n_iterations
+    recycler%now%work = recycler%now%work + recycler%gmres%n_iterations*once
     solved = outcome == gmres_converged
   end subroutine iterate
 
-  !> Factorises a matrix and remembers it.
+  !> Factorises a matrix and remembers it. Source: theory.md 7.1.
   subroutine renew_factors(recycler, solver, matrix, outcome)
     type(recycler_t), intent(inout) :: recycler
     type(linear_solver_t), intent(inout) :: solver !! prepared
     type(csc_matrix_t), intent(in) :: matrix
     integer, intent(out) :: outcome                !! solver_*
 
+    recycler%is_new = .true.
+    call make_factors(recycler, solver, matrix, outcome)
+    if (is_exact(solver)) return
+    if (outcome /= solver_ok .or. solver%rcond < least_ratio) then
+      call leave_single(recycler, solver, matrix, outcome)
+    end if
+  end subroutine renew_factors
+
+  !> Single precision does not serve: factors by UMFPACK, now and later.
+  subroutine leave_single(recycler, solver, matrix, outcome)
+    type(recycler_t), intent(inout) :: recycler
+    type(linear_solver_t), intent(inout) :: solver !! of single precision; exact afterwards
+    type(csc_matrix_t), intent(in) :: matrix
+    integer, intent(out) :: outcome                !! solver_*
+
+    recycler%now%needs_double = .true.
+    call choose_library(solver, library_umfpack)
+    call analyse(solver, matrix, outcome)
+    if (outcome == solver_ok) call make_factors(recycler, solver, matrix, outcome)
+  end subroutine leave_single
+
+  !> Factors in place of those in use.
+  subroutine make_factors(recycler, solver, matrix, outcome)
+    type(recycler_t), intent(inout) :: recycler
+    type(linear_solver_t), intent(inout) :: solver !! analysed
+    type(csc_matrix_t), intent(in) :: matrix
+    integer, intent(out) :: outcome                !! solver_*
+    real(dp) :: clock(2)
+
     call forget_factors(recycler)
     recycler%gmres = gmres_t() ! the factors need the room
-    recycler%is_new = .true.
+    call cpu_time(clock(1))
     call factorize(solver, matrix, outcome)
+    call cpu_time(clock(2))
+    recycler%seconds(1) = recycler%seconds(1) + clock(2) - clock(1)
     if (outcome /= solver_ok .or. matrix%nnz > int(huge(1), ip)) return
     recycler%now%val = matrix%val
     recycler%now%is_there = .true.
     recycler%now%work = work_of_factors(solver, matrix)
-  end subroutine renew_factors
+  end subroutine make_factors
 
   !> The factors in use serve no more, only those of the last accepted increment are remembered.
   pure subroutine forget_factors(recycler)
@@ -206,8 +262,8 @@ contains
     type(factor_memory_t), intent(in) :: factors
     type(factor_memory_t) :: short
 
-    short = factor_memory_t(factors%is_there, factors%n, factors%nnz, factors%pattern, &
-                            factors%work, factors%digits, factors%rate)
+    short = factor_memory_t(factors%is_there, factors%needs_double, factors%n, factors%nnz, &
+                            factors%pattern, factors%work, factors%digits, factors%rate)
   end function without_values
 
   !> What a restart file keeps.
