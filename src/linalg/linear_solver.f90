@@ -61,6 +61,7 @@ module mpm_linear_solver
   real(dp), parameter :: flops_per_entry = 65.0_dp !! of a factorisation, in the time of one entry
   real(dp), parameter :: passes = 16.0_dp          !! over the factors while they are made
   real(dp), parameter :: per_column = 1500.0_dp    !! of a factorisation, whatever its size
+  real(dp), parameter :: per_unknown = 150.0_dp    !! of a solution, likewise
 
   !> OpenBLAS has its working memory: it belongs to the process, not to a solver.
   logical, save :: has_buffer = .false.
@@ -240,7 +241,7 @@ contains
     type(linear_solver_t), intent(in) :: solver !! factorised
     type(csc_matrix_t), intent(in) :: matrix
 
-    work = solver%entries + real(matrix%nnz, dp)
+    work = solver%entries + real(matrix%nnz, dp) + per_unknown*real(matrix%n, dp)
   end function work_of_solution
 
   !> Releases the handles; harmless when there are none. Counts stay, statistics go.
