@@ -1,9 +1,9 @@
 !> What an analysis carries from increment to increment.
 module mpm_analysis_run
-  use mpm_equilibrium, only: newton_report_t
   use mpm_increments, only: schedule_t
   use mpm_kinds, only: dp, ip
   use mpm_limit_load, only: limit_watch_t
+  use mpm_newton_report, only: newton_report_t
   use mpm_point_location, only: locator_t
   use mpm_restart_state, only: restart_t
   use mpm_system, only: body_t, system_t

@@ -1,11 +1,11 @@
 !> The note about a limit load: in the log, and on the terminal.
 module mpm_limit_note
   use, intrinsic :: iso_fortran_env, only: error_unit
-  use mpm_equilibrium, only: newton_report_t
   use mpm_error, only: error_t
   use mpm_increments, only: schedule_t
   use mpm_kinds, only: dp
   use mpm_limit_load, only: limit_watch_t, meets_limit_load
+  use mpm_newton_report, only: newton_report_t
   use mpm_run_log, only: log_message
   use mpm_run_output, only: run_output_t
   use mpm_system, only: system_t

@@ -1,7 +1,5 @@
 !> What ends a run early, and where in time and space it happened.
 module mpm_run_failure
-  use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_memory, outcome_singular, &
-    outcome_stretched, outcome_text
   use mpm_error, only: error_t, exit_lost_point, exit_model, exit_no_convergence, exit_solver, &
     make_error
   use mpm_fail_file, only: failure_t, write_fail_file
@@ -11,6 +9,8 @@ module mpm_run_failure
   use mpm_kinds, only: dp
   use mpm_memory, only: megabytes
   use mpm_model, only: model_t
+  use mpm_newton_report, only: newton_report_t, outcome_converged, outcome_memory, &
+    outcome_singular, outcome_stretched, outcome_text
   use mpm_place_text, only: place_text
   use mpm_point_location, only: location_report_t
   use mpm_system, only: body_t, system_t

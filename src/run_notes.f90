@@ -1,12 +1,12 @@
 !> What the writers are told about an attempt and about an accepted increment.
 module mpm_run_notes
   use mpm_analysis_run, only: wall_time
-  use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_interrupted
   use mpm_ghost_penalty, only: ghost_share
   use mpm_increment_work, only: reference_work
   use mpm_increments, only: schedule_t
   use mpm_kinds, only: dp
   use mpm_model, only: model_t
+  use mpm_newton_report, only: newton_report_t, outcome_converged, outcome_interrupted
   use mpm_nodal_frames, only: part_along
   use mpm_point_location, only: location_report_t
   use mpm_run_state, only: note_balance, note_constraints, run_state_t

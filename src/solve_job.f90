@@ -3,7 +3,7 @@ module mpm_solve_job
   use mpm_amplitude, only: time_increment_t
   use mpm_analysis_run, only: analysis_t, wall_time
   use mpm_dof_map, only: number_dofs, start_where_nodes_stand, turn_prescribed
-  use mpm_equilibrium, only: find_equilibrium, outcome_converged, outcome_interrupted
+  use mpm_equilibrium, only: find_equilibrium
   use mpm_error, only: error_t, exit_model, exit_no_convergence, exit_solver, make_error
   use mpm_external_force, only: check_applied, external_force, prepare_loads
   use mpm_geostatic_step, only: report_move
@@ -20,6 +20,7 @@ module mpm_solve_job
   use mpm_mesh_layout, only: lay_out_mesh
   use mpm_model, only: formulation_fbar, formulation_standard, model_t
   use mpm_model_signature, only: model_signature
+  use mpm_newton_report, only: outcome_converged, outcome_interrupted
   use mpm_patches, only: patches_of_single_elements
   use mpm_point_location, only: locate_points, location_report_t, lost_is_error
   use mpm_point_update, only: accept_points

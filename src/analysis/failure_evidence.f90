@@ -1,11 +1,11 @@
 !> What a failed attempt leaves behind that tells why it failed, and where.
 module mpm_failure_evidence
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-  use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_iterations, &
-    outcome_material, outcome_memory, outcome_not_finite, outcome_singular
   use mpm_kinds, only: dp
   use mpm_material_points, only: points_t
   use mpm_mesh, only: mesh_t
+  use mpm_newton_report, only: newton_report_t, outcome_converged, outcome_iterations, &
+    outcome_material, outcome_memory, outcome_not_finite, outcome_singular
   use mpm_nodal_frames, only: part_along
   use mpm_system, only: body_t, system_t
   implicit none

@@ -1,9 +1,9 @@
 !> Whether load control has met a limit load: the last load that the body can carry.
 module mpm_limit_load
   use mpm_dof_map, only: gather_free
-  use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_memory, outcome_stretched
   use mpm_increments, only: schedule_t
   use mpm_kinds, only: dp
+  use mpm_newton_report, only: newton_report_t, outcome_converged, outcome_memory, outcome_stretched
   use mpm_system, only: system_t
   implicit none
   private

@@ -1,14 +1,14 @@
 !> Where a run failed and why, in words and in the numbers of the input.
 module mpm_failure_text
-  use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_inverted, &
-    outcome_iterations, outcome_material, outcome_memory, outcome_not_finite, outcome_singular, &
-    outcome_stretched
   use mpm_failure_evidence, only: failure_evidence_t
   use mpm_increments, only: schedule_t
   use mpm_kinds, only: dp
   use mpm_material_points, only: points_t
   use mpm_mesh, only: mesh_t
   use mpm_model, only: model_t
+  use mpm_newton_report, only: newton_report_t, outcome_converged, outcome_inverted, &
+    outcome_iterations, outcome_material, outcome_memory, outcome_not_finite, outcome_singular, &
+    outcome_stretched
   use mpm_place_text, only: place_text
   use mpm_support_check, only: find_free_modes, find_hinge, suggest_support
   use mpm_system, only: body_t

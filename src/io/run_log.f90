@@ -1,11 +1,11 @@
 !> JOB.log: everything about a run that a reader may ask for later.
 module mpm_run_log
-  use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_text
   use mpm_error, only: error_t
   use mpm_expectations, only: n_failed_expectations, verdict_line, verdict_t
   use mpm_kinds, only: dp
   use mpm_log_model, only: freedom_ratio_text, model_text, set_text
   use mpm_model, only: model_t
+  use mpm_newton_report, only: newton_report_t, outcome_converged, outcome_text
   use mpm_run_state, only: run_info_t, run_state_t
   use mpm_text, only: integer_text, real_text
   use mpm_text_file, only: append_to_text_file, close_text_file, open_text_file, text_file_t, &

@@ -1,7 +1,6 @@
 !> All output of a run, driven by three events: an attempt, an accepted increment, the end.
 module mpm_run_output
   use, intrinsic :: iso_fortran_env, only: error_unit
-  use mpm_equilibrium, only: newton_report_t, outcome_converged, outcome_text
   use mpm_error, only: error_t
   use mpm_expectations, only: collect_expectations, evaluate_expectations, is_expected, verdict_t
   use mpm_file_exchange, only: remove_file
@@ -13,6 +12,7 @@ module mpm_run_output
   use mpm_material_points, only: points_t
   use mpm_mesh, only: mesh_t
   use mpm_model, only: model_t
+  use mpm_newton_report, only: newton_report_t, outcome_converged, outcome_text
   use mpm_progress, only: end_progress, show_progress
   use mpm_result_paths, only: result_paths_t
   use mpm_results_file, only: close_results, is_field_output_due, open_results, results_file_t, &

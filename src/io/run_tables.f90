@@ -1,7 +1,6 @@
 !> The group /tessera of JOB.vtkhdf: the deck, the program, and tables over the run.
 module mpm_run_tables
   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-  use mpm_equilibrium, only: newton_report_t
   use mpm_error, only: error_t
   use mpm_hdf5_file, only: hdf5_file_t, make_group, write_integers_attribute, write_text, &
                            write_text_attribute
@@ -10,6 +9,7 @@ module mpm_run_tables
   use mpm_history_columns, only: history_column_t
   use mpm_kinds, only: dp, ip
   use mpm_ledger, only: ledger_t
+  use mpm_newton_report, only: newton_report_t
   use mpm_run_state, only: run_info_t, run_state_t
   implicit none
   private
