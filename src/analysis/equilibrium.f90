@@ -33,12 +33,15 @@ module mpm_equilibrium
     real(dp) :: max_stretch = 2.0_dp  !! largest |ln(principal stretch)| in one increment [-]
     integer  :: linear_solver = method_automatic !! method_*
     integer  :: least_recycled = huge(1) !! unknowns from which automatic means recycling
+    logical  :: repeats = .false.     !! an attempt that fails with kept factors is made once more
+                                      !! with exact corrections
   end type newton_settings_t
 
   !> The state of Newton's method between two corrections.
   type :: newton_state_t
     real(dp), allocatable :: residual(:) !! (n)  f_ext - f_int of the unknowns [force]
     real(dp), allocatable :: x(:)        !! (n)  correction [length]
+    logical  :: exactly = .false.        !! all corrections have all digits
     logical  :: moved = .false.          !! the start already has the prescribed displacements
     real(dp) :: norm = 0.0_dp            !! of the residual [force]
     real(dp) :: stiffness = 0.0_dp       !! largest entry of the tangent [force/length]
@@ -55,9 +58,8 @@ contains
     type(body_t), intent(in)            :: body
     type(newton_settings_t), intent(in) :: settings
     type(newton_state_t) :: newton
-    real(dp) :: seconds(5)
-    integer  :: n_given_up
-    logical  :: predicts
+    integer :: n_before
+    logical :: predicts
 
     call open_report(report, settings%max_iterations)
     allocate (newton%residual(system%dofs%n), newton%x(system%dofs%n))
@@ -67,16 +69,19 @@ contains
       call predict(newton, system, report, body)
       if (report%predicted) call iterate(newton, system, report, body, settings)
     end if
-    if (report%predicted .and. all(report%outcome /= [outcome_converged, outcome_interrupted, &
-                                                      outcome_memory])) then
-      n_given_up = report%n_iterations
-      seconds = sum(report%seconds, dim=2)
-      call open_report(report, settings%max_iterations)
-      report%n_given_up = n_given_up
-      report%seconds(:, 1) = seconds
-      call start_at_rest(newton, system, report, body, .true.)
+    if (report%predicted .and. may_try_again(report)) then
+      n_before = report%n_iterations
+      call begin_again(newton, system, report, body, settings)
+      report%n_given_up = n_before
     end if
     if (.not. report%predicted) call iterate(newton, system, report, body, settings)
+    if (settings%repeats .and. may_try_again(report) .and. any(report%gmres > 0)) then
+      n_before = report%n_iterations
+      newton%exactly = .true.
+      call begin_again(newton, system, report, body, settings)
+      report%n_inexact = n_before
+      call iterate(newton, system, report, body, settings)
+    end if
     if (report%outcome == outcome_converged) call judge_stretch(report, system, settings)
     if (report%outcome == outcome_converged) call judge_tangent(report, system, body, settings)
     if (report%outcome == outcome_converged .and. settings%eigenvalues) then
@@ -85,6 +90,31 @@ contains
     report%worst_node = node_of_largest(system)
     call close_report(report)
   end subroutine find_equilibrium
+
+  !> Whether another way to the equilibrium of the increment may do better.
+  pure logical function may_try_again(report) result(may)
+    type(newton_report_t), intent(in) :: report
+
+    may = all(report%outcome /= [outcome_converged, outcome_interrupted, outcome_memory])
+  end function may_try_again
+
+  !> At rest once more, with a report that keeps what was tried before.
+  subroutine begin_again(newton, system, report, body, settings)
+    type(newton_state_t), intent(inout)  :: newton
+    type(system_t), intent(inout)        :: system
+    type(newton_report_t), intent(inout) :: report
+    type(body_t), intent(in)             :: body
+    type(newton_settings_t), intent(in)  :: settings
+    real(dp) :: seconds(5)
+    integer  :: n_given_up
+
+    n_given_up = report%n_given_up
+    seconds = sum(report%seconds, dim=2)
+    call open_report(report, settings%max_iterations)
+    report%n_given_up = n_given_up
+    report%seconds(:, 1) = seconds
+    call start_at_rest(newton, system, report, body, .true.)
+  end subroutine begin_again
 
   !> No displacement: the prescribed one comes with the first correction.
   subroutine start_at_rest(newton, system, report, body, with_moduli)
@@ -98,7 +128,7 @@ contains
     report%worst_element = 0
     report%worst_point = 0
     newton%moved = .false.
-    newton%forcing = forcing_t()
+    newton%forcing = forcing_t(exactly=newton%exactly)
     system%u = 0.0_dp
     call measure(newton, system, report, body, 0, with_moduli)
     report%at_rest = report%residual(0)

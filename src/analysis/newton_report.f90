@@ -41,6 +41,7 @@ module mpm_newton_report
     logical  :: at_limit_load = .false.    !! load control has met a limit load, see mpm_limit_load
     logical  :: predicted = .false.        !! began with the motion of the last increment
     integer  :: n_given_up = 0             !! corrections after a prediction that led nowhere
+    integer  :: n_inexact = 0              !! corrections of limited accuracy that led nowhere
     real(dp) :: stretch = 0.0_dp           !! largest one of an active element, once in equilibrium [-]
     real(dp) :: reach = 0.0_dp             !! largest way of the load in one correction [length]
     type(eigenvalues_t) :: eigenvalues     !! of the last tangent, if they were asked for

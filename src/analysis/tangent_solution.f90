@@ -12,6 +12,7 @@ module mpm_tangent_solution
   real(dp), parameter :: blind = 3.0e-4_dp   !! relative residual of a first solution from rest
   real(dp), parameter :: first = 0.01_dp     !! of a first solution from the last increment
   real(dp), parameter :: largest = 0.1_dp    !! of any solution
+  real(dp), parameter :: digits = 10.0_dp    !! of solutions that are to be exact
   real(dp), parameter :: factor = 0.9_dp     !! on the square of the fall of the last correction
   ! Where no point flows, and where some do: digits are worth less then.
   real(dp), parameter :: square(2) = [0.1_dp, 1.0_dp] !! on the square of the residual
@@ -21,6 +22,7 @@ module mpm_tangent_solution
 
   !> What decides how accurately the next system is solved.
   type :: forcing_t
+    logical  :: exactly = .false.  !! all solutions with all digits
     logical  :: begun = .false.    !! there was a correction before
     real(dp) :: norm = 0.0_dp      !! of Newton's residual before that one, 0 if unknown [force]
     type(accuracy_t) :: accuracy   !! asked of the next solution
@@ -41,7 +43,9 @@ contains
     integer  :: i
 
     associate (accuracy => forcing%accuracy)
-      if (.not. (norm > 0.0_dp .and. residual > 0.0_dp)) then
+      if (forcing%exactly) then
+        accuracy = accuracy_t(goal=norm_rhs*10.0_dp**(-digits), ahead=digits)
+      else if (.not. (norm > 0.0_dp .and. residual > 0.0_dp)) then
         accuracy = accuracy_t(goal=blind*norm_rhs, ahead=0.0_dp, decides=.false.)
       else
         eta = first

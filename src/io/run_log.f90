@@ -80,7 +80,8 @@ contains
     type(error_t), allocatable, intent(out) :: error !! exit_file
 
     log%n_attempts = log%n_attempts + 1
-    log%n_iterations = log%n_iterations + report%n_iterations + report%n_given_up
+    log%n_iterations = log%n_iterations + report%n_iterations + report%n_given_up &
+                       + report%n_inexact
     if (allocated(report%seconds)) log%seconds = log%seconds + sum(report%seconds, 2)
     call write_line(log%file, attempt_text(state, report), error)
   end subroutine log_attempt
@@ -116,6 +117,8 @@ contains
     if (report%predicted) text = line_end//"  started from the last increment"
     if (report%n_given_up > 0) text = line_end//"  start from the last increment given up after " &
       & //integer_text(report%n_given_up)//" iterations"
+    if (report%n_inexact > 0) text = text//line_end//"  corrections by GMRES given up after "// &
+      & integer_text(report%n_inexact)//" iterations, repeated with all digits"
   end function start_text
 
   !> Pairs of the ghost penalty, and what it carries in an increment that converged.

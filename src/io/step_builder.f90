@@ -101,6 +101,7 @@ contains
       if (step%geostatic) call apply_at_once(step%load)
     end associate
     step%newton%least_recycled = least_recycled(model%mesh%n_dim, step%schedule%direct)
+    step%newton%repeats = step%schedule%direct
     call build_requests(step, model, deck, context, range, time)
     call check_interval(step, deck, context)
     time = time + step%schedule%period
