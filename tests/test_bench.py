@@ -302,6 +302,10 @@ def spoil_memory(found):
     found["cases"]["footing-16000"]["runs"]["RECYCLED/1"][0]["memory"] = 2**31
 
 
+def spoil_exact(found):
+    found["cases"]["footing-16000"]["runs"]["DIRECT/1"][0]["memory"] = 2**31
+
+
 def spoil_threads(found):
     found["cases"]["footing-522"]["runs"]["RECYCLED/2"][0]["seconds"]["point_loop"] = 1.0
 
@@ -324,7 +328,10 @@ SPOILT = {
     spoil_increment: ["linear algebra of 7 iterations, footing-16000"],
     spoil_count: ["Newton iterations of RECYCLED over DIRECT"],
     spoil_history: ["histories of both"],
-    spoil_memory: ["peak memory over 1.3 factors + 600 bytes per point, footing-16000"],
+    spoil_memory: ["peak memory over 1.3 factors of UMFPACK + 600 bytes per point, footing-16000, "
+                   "RECYCLED"],
+    spoil_exact: ["peak memory over 1.3 factors of UMFPACK + 600 bytes per point, footing-16000, "
+                  "DIRECT"],
     spoil_threads: ["point loop with two threads, footing-522"],
     spoil_location: ["location, CPU time over a naive search"],
     spoil_kernels: ["both kernels, largest difference"],

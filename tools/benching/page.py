@@ -8,6 +8,7 @@ from benching.cases import Case
 from benching.judging import Limit
 from benching.kernels import BYTES, FLOPS, OPERATIONS, WAYS
 from benching.measuring import (
+    both_solvers,
     compare_solvers,
     exponents,
     kernel_sum,
@@ -92,18 +93,25 @@ def entries_of(found: dict, cases: Sequence[Case], n_threads: int = 1) -> list[t
 
 
 def sizes(found: dict, cases: Sequence[Case]) -> Table:
-    """What is solved, and the memory that it takes."""
+    """What is solved, and the memory that it takes: with DIRECT, and with the main solver."""
     head = ("case", "runs", "unknowns", "nonzeros", "points", "increments", "iterations",
             "peak MiB", "factor MiB", "bytes per point")  # fmt: skip
     rows = []
     for name, runs in entries_of(found, cases):
-        memory, n_points = median(runs, "memory"), median(runs, "points")
+        both = both_solvers(found["cases"][name]) or (runs,)
         counts = [
             f"{int(median(runs, key)):,}"
             for key in ("unknowns", "nonzeros", "points", "increments", "iterations")
         ]
-        mebibytes = [f"{m / 2**20:,.0f}" for m in (memory, median(runs, "factor_memory"))]
-        rows.append((name, str(len(runs)), *counts, *mebibytes, f"{memory / n_points:,.0f}"))
+        memory = [
+            ", ".join(f"{median(r, key) / unit:,.0f}" for r in both)
+            for key, unit in (
+                ("memory", 2**20),
+                ("factor_memory", 2**20),
+                ("memory", median(runs, "points")),
+            )
+        ]
+        rows.append((name, str(len(runs)), *counts, *memory))
     return head, rows
 
 
