@@ -247,6 +247,7 @@ contains
     call solve_tangent(newton%x, system, rhs, newton%forcing%accuracy, &
                        chosen_method(settings%linear_solver, system%dofs%n, &
                                      settings%least_recycled), outcome)
+    newton%forcing%gave_up = system%recycler%gave_up
     if (system%dofs%n > 0) report%rcond = min(report%rcond, system%solver%rcond)
     report%seconds(3:5, iteration) = report%seconds(3:5, iteration) &
                                      + [clock(2) - clock(1), system%recycler%seconds]

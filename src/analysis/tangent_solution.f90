@@ -9,7 +9,7 @@ module mpm_tangent_solution
   private
   public :: forcing_t, choose_accuracy, factorize_again, solve_tangent
 
-  real(dp), parameter :: blind = 3.0e-4_dp   !! relative residual of a first solution from rest
+  real(dp), parameter :: blind = 1.0e-8_dp   !! relative residual of a first solution from rest
   real(dp), parameter :: first = 0.01_dp     !! of a first solution from the last increment
   real(dp), parameter :: largest = 0.1_dp    !! of any solution
   real(dp), parameter :: digits = 10.0_dp    !! of solutions that are to be exact
@@ -24,6 +24,7 @@ module mpm_tangent_solution
   type :: forcing_t
     logical  :: exactly = .false.  !! all solutions with all digits
     logical  :: begun = .false.    !! there was a correction before
+    logical  :: gave_up = .false.  !! older factors were tried in vain for it
     real(dp) :: norm = 0.0_dp      !! of Newton's residual before that one, 0 if unknown [force]
     type(accuracy_t) :: accuracy   !! asked of the next solution
   end type forcing_t
@@ -44,16 +45,18 @@ contains
 
     associate (accuracy => forcing%accuracy)
       if (forcing%exactly) then
-        accuracy = accuracy_t(goal=norm_rhs*10.0_dp**(-digits), ahead=digits)
+        accuracy = accuracy_t(goal=norm_rhs*10.0_dp**(-digits), afresh=.true.)
       else if (.not. (norm > 0.0_dp .and. residual > 0.0_dp)) then
         accuracy = accuracy_t(goal=blind*norm_rhs, ahead=0.0_dp, decides=.false.)
       else
         eta = first
         accuracy%decides = .true.
+        accuracy%afresh = .false.
         if (forcing%begun) then
           eta = factor
           if (norm < forcing%norm) eta = factor*(norm/forcing%norm)**2
           accuracy%decides = norm < settled*forcing%norm
+          accuracy%afresh = forcing%gave_up .and. .not. accuracy%decides
         end if
         scale = norm/residual
         i = merge(2, 1, flows)

@@ -11,7 +11,7 @@ module mpm_linear_method
   integer, parameter :: method_recycled = 2  !! factors that are kept, and GMRES
   integer, parameter :: method_mumps = 3     !! MUMPS, new factors for every correction
 
-  integer, parameter :: enough = 2000 !! unknowns from which recycling pays
+  integer, parameter :: enough = 2000 !! unknowns in 3-D from which recycling pays
   integer, parameter :: many = 20000  !! unknowns in 3-D from which it pays to change the increments
 
 contains
@@ -26,14 +26,19 @@ contains
     if (asked == method_automatic) method = merge(method_recycled, method_direct, n >= least)
   end function chosen_method
 
-  !> Unknowns from which recycling is the choice. Where the size of the increments follows the number
-  !! of corrections, other corrections mean other increments: there it must pay much, as it does not
-  !! in plane strain. Source: theory.md 7.1.
+  !> Unknowns from which recycling is the choice. In plane strain factors cost little, and hard
+  !! increments take more corrections with it. Where the size of the increments follows the number of
+  !! corrections, other corrections mean other increments: there it must pay much. Source: theory.md
+  !! 7.1.
   pure integer function least_recycled(n_dim, equal_increments) result(n)
     integer, intent(in) :: n_dim            !! 2 or 3
     logical, intent(in) :: equal_increments !! as the deck gives them
 
-    n = merge(enough, merge(huge(n), many, n_dim == 2), equal_increments)
+    if (n_dim == 2) then
+      n = huge(n)
+    else
+      n = merge(enough, many, equal_increments)
+    end if
   end function least_recycled
 
   !> The library that makes the factors of a method.

@@ -31,6 +31,7 @@ module mpm_recycled_solver
     real(dp) :: ahead = 0.0_dp !! decimal digits still to gain in this and the solutions that
                                !! follow soon, 0 if unknown
     logical  :: decides = .true. !! new factors may be made because they are cheaper
+    logical  :: afresh = .false. !! new factors are made, whatever those in use would cost
   end type accuracy_t
 
   !> Which factors are in use and what they have cost; enough to make them again.
@@ -55,6 +56,7 @@ module mpm_recycled_solver
     type(gmres_t) :: gmres            !! work space
     integer  :: n_iterations = 0      !! of GMRES in the last solution, with old and new factors
     logical  :: is_new = .false.      !! the factors are of the matrix solved last
+    logical  :: gave_up = .false.     !! older factors were tried in vain in the last solution
     real(dp) :: seconds(2) = 0.0_dp   !! CPU of the last solution: factorisation, the rest [s]
   end type recycler_t
 
@@ -105,6 +107,7 @@ contains
     recycler%seconds = 0.0_dp
     recycler%n_iterations = 0
     recycler%is_new = .false.
+    recycler%gave_up = .false.
     norm = norm2(rhs)
     digits = fewest_digits
     if (norm > 0.0_dp) digits = max(digits, log10(norm) - log10(max(accuracy%goal, tiny(norm))))
@@ -114,6 +117,7 @@ contains
     ! Nothing on the right-hand side would hide a singular matrix.
     if (norm > 0.0_dp .and. serve_on(recycler%now, solver, matrix, accuracy)) then
       call iterate(recycler, x, solver, matrix, rhs, accuracy%goal, solved)
+      recycler%gave_up = .not. solved
     end if
     if (.not. solved) then
       call solve_afresh(recycler, x, solver, matrix, rhs, accuracy%goal, outcome)
@@ -157,7 +161,7 @@ contains
     logical  :: serves
     real(dp) :: afresh
 
-    serves = factors%is_there .and. has_factors(solver)
+    serves = factors%is_there .and. has_factors(solver) .and. .not. accuracy%afresh
     if (.not. (serves .and. accuracy%decides)) return
     afresh = work_of_factors(solver, matrix) + accuracy%ahead*work_of_solution(solver, matrix)
     serves = growth*factors%rate*accuracy%ahead <= afresh &
