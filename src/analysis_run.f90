@@ -1,7 +1,7 @@
 !> What an analysis carries from increment to increment.
 module mpm_analysis_run
   use mpm_increments, only: schedule_t
-  use mpm_kinds, only: dp, ip
+  use mpm_kinds, only: dp
   use mpm_limit_load, only: limit_watch_t
   use mpm_newton_report, only: newton_report_t
   use mpm_point_location, only: locator_t
@@ -9,7 +9,7 @@ module mpm_analysis_run
   use mpm_system, only: body_t, system_t
   implicit none
   private
-  public :: analysis_t, wall_time
+  public :: analysis_t
 
   !> The body, the work space of an increment, and the last state to go on from.
   type :: analysis_t
@@ -26,16 +26,5 @@ module mpm_analysis_run
     real(dp) :: max_memory = 0.0_dp           !! that the run may take [GB], 0 = any
     real(dp) :: last_written = 0.0_dp         !! wall time of the last restart file [s]
   end type analysis_t
-
-contains
-
-  !> Seconds of the system's clock.
-  function wall_time() result(seconds)
-    real(dp) :: seconds !! [s]
-    integer(ip) :: ticks, rate
-
-    call system_clock(ticks, rate)
-    seconds = real(ticks, dp)/real(rate, dp)
-  end function wall_time
 
 end module mpm_analysis_run

@@ -1,6 +1,7 @@
 !> A restart file is read: whether it belongs to the deck, and the run put back where it was.
 module mpm_restart_load
-  use mpm_analysis_run, only: analysis_t, wall_time
+  use mpm_analysis_run, only: analysis_t
+  use mpm_clock, only: wall_time
   use mpm_deck_card, only: deck_t
   use mpm_deck_signature, only: check_signature
   use mpm_error, only: error_t, exit_deck, exit_file, make_error

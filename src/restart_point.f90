@@ -1,6 +1,7 @@
 !> Restart files of a run: when one is written, and the end that a user asks for.
 module mpm_restart_point
-  use mpm_analysis_run, only: analysis_t, wall_time
+  use mpm_analysis_run, only: analysis_t
+  use mpm_clock, only: wall_time
   use mpm_control_files, only: take_request
   use mpm_error, only: error_t, exit_interrupted, exit_terminated, make_error
   use mpm_interruption, only: received_signal, signal_interrupt

@@ -1,6 +1,6 @@
 !> What the writers are told about an attempt and about an accepted increment.
 module mpm_run_notes
-  use mpm_analysis_run, only: wall_time
+  use mpm_clock, only: wall_time
   use mpm_ghost_penalty, only: ghost_share
   use mpm_increment_work, only: reference_work
   use mpm_increments, only: schedule_t

@@ -1,7 +1,8 @@
 !> The analysis of a job: increments of equilibrium from the first step to the last.
 module mpm_solve_job
   use mpm_amplitude, only: time_increment_t
-  use mpm_analysis_run, only: analysis_t, wall_time
+  use mpm_analysis_run, only: analysis_t
+  use mpm_clock, only: wall_time
   use mpm_dof_map, only: number_dofs, start_where_nodes_stand, turn_prescribed
   use mpm_equilibrium, only: find_equilibrium
   use mpm_error, only: error_t, exit_model, exit_no_convergence, exit_solver, make_error
