@@ -6,6 +6,7 @@ module mpm_equilibrium
   use mpm_eigenvalues, only: find_eigenvalues
   use mpm_ghost_penalty, only: add_ghost_force, add_ghost_tangent
   use mpm_interruption, only: received_signal
+  use mpm_iteration_watch, only: iteration_watch_t
   use mpm_kinds, only: dp
   use mpm_kinematics, only: find_largest_stretch
   use mpm_linear_method, only: chosen_method, method_automatic
@@ -52,11 +53,12 @@ contains
 
   !> Newton's method with backtracking. On success system%u, system%kinematics and system%f_int hold
   !! the solution; on failure nothing converged has changed. Source: theory.md (15).
-  subroutine find_equilibrium(system, report, body, settings)
+  subroutine find_equilibrium(system, report, body, settings, watch)
     type(system_t), intent(inout)       :: system  !! dofs, pattern, f_ext of this increment are set
     type(newton_report_t), intent(out)  :: report
     type(body_t), intent(in)            :: body
     type(newton_settings_t), intent(in) :: settings
+    class(iteration_watch_t), intent(inout), optional :: watch !! told of iterations
     type(newton_state_t) :: newton
     integer :: n_before
     logical :: predicts
@@ -67,20 +69,20 @@ contains
     call start_at_rest(newton, system, report, body, .not. predicts)
     if (predicts) then
       call predict(newton, system, report, body)
-      if (report%predicted) call iterate(newton, system, report, body, settings)
+      if (report%predicted) call iterate(newton, system, report, body, settings, watch)
     end if
     if (report%predicted .and. may_try_again(report)) then
       n_before = report%n_iterations
       call begin_again(newton, system, report, body, settings)
       report%n_given_up = n_before
     end if
-    if (.not. report%predicted) call iterate(newton, system, report, body, settings)
+    if (.not. report%predicted) call iterate(newton, system, report, body, settings, watch)
     if (settings%repeats .and. may_try_again(report) .and. any(report%gmres > 0)) then
       n_before = report%n_iterations
       newton%exactly = .true.
       call begin_again(newton, system, report, body, settings)
       report%n_inexact = n_before
-      call iterate(newton, system, report, body, settings)
+      call iterate(newton, system, report, body, settings, watch)
     end if
     if (report%outcome == outcome_converged) call judge_stretch(report, system, settings)
     if (report%outcome == outcome_converged) call judge_tangent(report, system, body, settings)
@@ -158,12 +160,13 @@ contains
   end subroutine predict
 
   !> Corrections until the residual is small or cannot be made so.
-  subroutine iterate(newton, system, report, body, settings)
+  subroutine iterate(newton, system, report, body, settings, watch)
     type(newton_state_t), intent(inout)  :: newton !! at the start
     type(system_t), intent(inout)        :: system
     type(newton_report_t), intent(inout) :: report
     type(body_t), intent(in)             :: body
     type(newton_settings_t), intent(in)  :: settings
+    class(iteration_watch_t), intent(inout), optional :: watch
     integer :: iteration
 
     do iteration = 1, settings%max_iterations
@@ -173,6 +176,7 @@ contains
       call step(newton, system, report, body, settings, iteration)
       if (report%outcome /= outcome_converged) exit
       if (report%residual(iteration) <= settings%tolerance) exit
+      if (present(watch)) call watch%note_iteration()
       if (iteration == settings%max_iterations) report%outcome = outcome_iterations
       if (received_signal() /= 0) report%outcome = outcome_interrupted
     end do
