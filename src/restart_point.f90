@@ -12,7 +12,7 @@ module mpm_restart_point
   use mpm_restart_output, only: note_output
   use mpm_restart_state, only: restart_t
   use mpm_run_log, only: log_message
-  use mpm_run_output, only: run_output_t
+  use mpm_run_output, only: publish_output, run_output_t
   use mpm_run_state, only: run_state_t
   use mpm_text, only: integer_text, real_text
   implicit none
@@ -35,7 +35,8 @@ contains
     call note_output(analysis%kept, output)
   end subroutine keep_point
 
-  !> Writes a restart file of the last accepted increment.
+  !> Writes a restart file of the last accepted increment. A run that goes on from it needs all
+  !! results up to there, so they are published first.
   subroutine save_point(analysis, output, model, error)
     type(analysis_t), intent(inout) :: analysis      !! mesh and points are those of kept
     type(run_output_t), intent(inout) :: output      !! open
@@ -43,6 +44,8 @@ contains
     type(error_t), allocatable, intent(out) :: error !! exit_file
     type(restart_t) :: restart
 
+    call publish_output(output, error)
+    if (allocated(error)) return
     restart = analysis%kept
     restart%mesh_x = analysis%body%mesh%x
     call hand_over(analysis%body%points, restart%points)

@@ -60,6 +60,7 @@ contains
     formulation = formulations(options, model)
     call make_run_info(info, deck%file(1)%path, deck%source, options%threads, options%quiet)
     info%verbose = options%verbose
+    if (options%publish >= 0.0_dp) info%publish_interval = options%publish
     info%warnings = warnings
     call catch_signals()
     do i = 1, size(formulation)

@@ -181,7 +181,7 @@ contains
           return
         end if
         system%guess_ratio = guess_ratio(schedule)
-        call find_equilibrium(system, report, body, model%step(schedule%step)%newton)
+        call find_equilibrium(system, report, body, model%step(schedule%step)%newton, output)
         call refuse_mechanism(report, body, system%u, schedule, model)
         call note_attempt(state, schedule, report, system, body)
         if (report%outcome == outcome_converged) call note_equilibrium(state, system, body, model)

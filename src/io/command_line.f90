@@ -21,6 +21,7 @@ module mpm_command_line
     logical :: check_tangent = .false.   !! tangent against finite differences
     logical :: estimate = .false.        !! tell what a run needs, do not solve
     real(dp) :: max_memory = 0.0_dp      !! memory that a run may take [GB], 0 = any
+    real(dp) :: publish = -1.0_dp        !! least time between publications [s], < 0: default
     integer, allocatable :: compare(:)   !! (n) formulation_* to run one after the other, or empty
     logical :: lax = .false.             !! what nothing uses is a warning
     logical :: quiet = .false.
@@ -39,7 +40,7 @@ module mpm_command_line
     character(64) :: meaning        !! line of the help
   end type option_t
 
-  type(option_t), parameter :: option(15) = [ &
+  type(option_t), parameter :: option(16) = [ &
     option_t("o", "output", "DIR", "where results go (default: beside the deck)"), &
     option_t("t", "threads", "N", "OpenMP threads (default: OMP_NUM_THREADS, else all)"), &
     option_t("f", "force", "", "overwrite earlier results of this job"), &
@@ -47,6 +48,7 @@ module mpm_command_line
     option_t(" ", "check-tangent", "", "compare the tangent with finite differences, then stop"), &
     option_t(" ", "estimate", "", "tell memory, time and size of the results, do not solve"), &
     option_t(" ", "max-memory", "GB", "refuse a run that needs more memory"), &
+    option_t(" ", "publish", "SECONDS", "least time between publications of the results (default: 1)"), &
     option_t(" ", "compare", "LIST", "run the formulations of a list, as standard,fbar"), &
     option_t(" ", "restart", "FILE", "go on from a restart file"), &
     option_t(" ", "lax", "", "only warn of a set, material or amplitude that is not used"), &
@@ -258,6 +260,12 @@ contains
       call parse_real(value, options%max_memory, ok)
       if (.not. ok .or. .not. options%max_memory > 0.0_dp) &
         call usage_error(error, "--max-memory is '"//value//"': expected gigabytes, a number > 0")
+    case ("publish")
+      call check_first(options%publish < 0.0_dp, name, error)
+      if (allocated(error)) return
+      call parse_real(value, options%publish, ok)
+      if (.not. ok .or. options%publish < 0.0_dp) &
+        call usage_error(error, "--publish is '"//value//"': expected seconds, a number >= 0")
     case ("compare")
       call check_first(size(options%compare) == 0, name, error)
       if (allocated(error)) return

@@ -1,17 +1,20 @@
 !> Going on with the result files of an interrupted run.
 module mpm_output_resume
+  use mpm_clock, only: wall_time
   use mpm_error, only: error_t
   use mpm_kinds, only: ip
   use mpm_model, only: model_t
   use mpm_output_mark, only: output_mark_t
+  use mpm_publication, only: note_publication
   use mpm_result_paths, only: result_paths_t
-  use mpm_results_file, only: close_results
+  use mpm_results_file, only: close_results, publish_results
   use mpm_run_log, only: resume_log
   use mpm_run_output, only: open_fields, prepare_output, run_output_t
   use mpm_run_state, only: run_info_t
+  use mpm_run_tables, only: add_waiting
   use mpm_status_file, only: resume_status
   use mpm_text_file, only: check_text_file, resume_text_file
-  use mpm_vtkhdf, only: flush_vtkhdf, mark_vtkhdf, resume_vtkhdf
+  use mpm_vtkhdf, only: mark_vtkhdf, resume_vtkhdf
   implicit none
   private
   public :: resume_output, take_mark
@@ -27,6 +30,7 @@ contains
     mark%status = output%status%file%mark
     mark%history = output%history%mark
     call mark_vtkhdf(output%results%points, mark%points)
+    call add_waiting(output%tables, mark%points%n_rows)
     call mark_vtkhdf(output%results%mesh, mark%mesh)
     mark%n_written = int(output%results%n_written, ip)
     mark%n_shown = int(output%n_shown, ip)
@@ -60,8 +64,8 @@ contains
       results%n_written = int(mark%n_written)
       output%n_shown = int(mark%n_shown)
       if (.not. allocated(error)) call resume_texts(output, paths, model, mark, message, error)
-      call flush_vtkhdf(results%points, error)
-      call flush_vtkhdf(results%mesh, error)
+      call publish_results(results, error)
+      call note_publication(output%publication, wall_time())
       if (allocated(error)) call close_results(results, error)
     end associate
   end subroutine resume_output

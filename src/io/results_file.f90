@@ -17,7 +17,7 @@ module mpm_results_file
   implicit none
   private
   public :: results_file_t, close_results, field_names, is_field_output_due, open_results
-  public :: write_increment_fields
+  public :: publish_results, write_increment_fields
 
   character(8), parameter :: default_fields(12) = [character(8) :: "S", "TAU", "LE", "PEEQ", "J", &
     "JBAR", "U", "VOL", "MAT", "PATCH", "ELEMENT", "ID"]
@@ -76,7 +76,7 @@ contains
     call add_field(vtk, "JPATCH", on_cells, scalar_layout, error)
   end subroutine add_mesh_fields
 
-  !> Writes points and mesh of an increment and makes them visible to a reader.
+  !> Writes points and mesh of an increment.
   subroutine write_increment_fields(results, model, mesh, points, state, error)
     type(results_file_t), intent(inout) :: results   !! has one step more
     type(model_t), intent(in)     :: model           !! patches
@@ -122,7 +122,6 @@ contains
         call write_field(results%points, i, values, error)
       end if
     end do
-    call flush_vtkhdf(results%points, error)
   end subroutine write_points
 
   !> Writes the background mesh: the cells once, everything that changes per step.
@@ -154,14 +153,24 @@ contains
     call write_field(vtk, 7, reshape(state%delta_j, [1, mesh%n_el]), error)
     call write_field(vtk, 8, reshape(state%delta_j_patch(model%patches%of_element), &
                                      [1, mesh%n_el]), error)
-    call flush_vtkhdf(vtk, error)
   end subroutine write_mesh
 
-  !> Closes both files; no effect on closed ones. After an error nothing new gets into them.
+  !> Makes what was written visible to a reader: points first, so that no mesh is without them.
+  subroutine publish_results(results, error)
+    type(results_file_t), intent(inout) :: results     !! after the last field of an increment
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+
+    call flush_vtkhdf(results%points, error)
+    call flush_vtkhdf(results%mesh, error)
+  end subroutine publish_results
+
+  !> Publishes and closes both files; no effect on closed ones. After an error nothing new gets into
+  !! them, nor after a failure of the points into the mesh.
   subroutine close_results(results, error)
     type(results_file_t), intent(inout) :: results     !! closed
     type(error_t), allocatable, intent(inout) :: error !! exit_file
 
+    results%mesh%file%has_failed = results%mesh%file%has_failed .or. results%points%file%has_failed
     call close_vtkhdf(results%points, error)
     call close_vtkhdf(results%mesh, error)
   end subroutine close_results

@@ -21,7 +21,7 @@ module mpm_run_log
   type :: run_log_t
     type(text_file_t) :: file
     real(dp) :: seconds(5) = 0.0_dp !! CPU: kinematics, stress, assembly, factorisation, solve [s]
-    real(dp) :: output_seconds = 0.0_dp !! CPU of writing, but for closing the files [s]
+    real(dp) :: output_seconds = 0.0_dp !! CPU of writing, but for the end of the log [s]
     integer  :: n_attempts = 0      !! increments tried
     integer  :: n_iterations = 0    !! corrections of Newton's method
   end type run_log_t

@@ -1,12 +1,14 @@
 !> All output of a run, driven by three events: an attempt, an accepted increment, the end.
 module mpm_run_output
   use, intrinsic :: iso_fortran_env, only: error_unit
-  use mpm_error, only: error_t
+  use mpm_clock, only: wall_time
+  use mpm_error, only: error_t, exit_expectation, exit_ok
   use mpm_expectations, only: collect_expectations, evaluate_expectations, is_expected, verdict_t
   use mpm_file_exchange, only: remove_file
-  use mpm_hdf5_file, only: publish_hdf5_file, write_text_attribute
+  use mpm_hdf5_file, only: write_text_attribute
   use mpm_history, only: open_history, units_of, write_history_row
   use mpm_history_columns, only: history_column_t, history_columns, history_values
+  use mpm_iteration_watch, only: iteration_watch_t
   use mpm_kinds, only: dp
   use mpm_ledger, only: point_ledger
   use mpm_material_points, only: points_t
@@ -14,28 +16,32 @@ module mpm_run_output
   use mpm_model, only: model_t
   use mpm_newton_report, only: newton_report_t, outcome_converged, outcome_text
   use mpm_progress, only: end_progress, show_progress
+  use mpm_publication, only: is_publication_due, note_publication, publication_t
   use mpm_result_paths, only: result_paths_t
-  use mpm_results_file, only: close_results, is_field_output_due, open_results, results_file_t, &
-                              write_increment_fields
+  use mpm_results_file, only: close_results, is_field_output_due, open_results, publish_results, &
+                              results_file_t, write_increment_fields
   use mpm_run_log, only: attempt_text, close_log, locking_text, log_attempt, log_message, &
                          log_summary, open_log, run_log_t
   use mpm_run_state, only: estimated_time_left, run_info_t, run_state_t
-  use mpm_run_tables, only: append_history, append_iterations, append_ledger, open_tables, &
-                            run_tables_t
+  use mpm_run_tables, only: append_history, append_iterations, append_ledger, n_waiting, &
+                            open_tables, run_tables_t, write_tables
   use mpm_status_file, only: open_status, status_file_t, write_status
   use mpm_text_file, only: close_text_file, ignore_size_signal, text_file_t
   implicit none
   private
   public :: run_output_t, close_output, open_output, write_attempt, write_increment
-  public :: open_fields, prepare_output, write_last_state
+  public :: open_fields, prepare_output, publish_output, write_last_state
 
-  !> Everything that is open during a run.
-  type :: run_output_t
+  integer, parameter :: most_waiting = 4096 !! rows of a table in memory
+
+  !> Everything that is open during a run. Between iterations, results that wait are published.
+  type, extends(iteration_watch_t) :: run_output_t
     type(run_log_t)      :: log                      !! JOB.log
     type(status_file_t)  :: status                   !! JOB.sta
     type(text_file_t)    :: history                  !! JOB_history.csv
     type(results_file_t) :: results                  !! JOB.vtkhdf and JOB_mesh.vtkhdf
     type(run_tables_t)   :: tables                   !! group /tessera of JOB.vtkhdf
+    type(publication_t)      :: publication          !! of the results and the tables
     type(history_column_t), allocatable :: column(:) !! of *HISTORY
     type(verdict_t), allocatable :: verdict(:)       !! of *EXPECT
     logical :: quiet = .false.                       !! no progress on stderr
@@ -46,6 +52,9 @@ module mpm_run_output
     integer :: n_shown = -1                          !! accepted increments at the last field output
     real(dp) :: told(3) = 0.0_dp                     !! seconds in earlier rows of the ledger
     character(:), allocatable :: run_id              !! no other run has it
+    type(error_t), allocatable :: failure            !! between iterations, not told yet
+  contains
+    procedure :: note_iteration => publish_between_iterations
   end type run_output_t
 
 contains
@@ -79,6 +88,7 @@ contains
     output%quiet = info%quiet
     output%verbose = info%verbose
     output%run_id = info%run_id
+    output%publication%interval = info%publish_interval
     output%column = history_columns(model)
     call collect_expectations(output%verdict, model)
     output%metered = model%locking_meter .or. is_expected(output%verdict, "CHECKERBOARD")
@@ -127,12 +137,12 @@ contains
     if (allocated(error)) return
     call write_status(output%status, state, outcome_text(report%outcome), error)
     if (allocated(error)) return
-    call append_iterations(output%tables, output%results%points%file, state, report, error)
+    call move_alloc(output%failure, error)
     if (allocated(error)) return
-    if (report%outcome /= outcome_converged) then
-      call publish_hdf5_file(output%results%points%file, error)
-    end if
-    if (output%quiet) return
+    call append_iterations(output%tables, state, report)
+    call limit_waiting(output, error)
+    if (report%outcome /= outcome_converged) call publish_if_due(output, error)
+    if (allocated(error) .or. output%quiet) return
     if (output%verbose) then
       write (error_unit, "(a)") attempt_text(state, report)
       return
@@ -176,23 +186,67 @@ contains
     values(:) = history_values(output%column, points, model%patches, state)
     call write_history_row(output%history, state, values, error)
     if (allocated(error)) return
-    call append_history(output%tables, output%results%points%file, state, values, error)
-    if (allocated(error)) return
+    call append_history(output%tables, state, values)
     seconds = [state%location_seconds, output%log%output_seconds, state%point_loop_seconds]
-    call append_ledger(output%tables, output%results%points%file, state, point_ledger(points), &
-                       seconds - output%told, error)
+    call append_ledger(output%tables, state, point_ledger(points), seconds - output%told)
     output%told = seconds
-    if (allocated(error)) return
+    call limit_waiting(output, error)
     call evaluate_expectations(output%verdict, points, model%patches, state)
     due = state%step == 0 .or. output%n_shown < 0 ! the first one, also after a restart
     if (.not. due) due = is_field_output_due(model%step(state%step), state)
     if (due) then
       output%n_shown = state%increment_total
-      call write_increment_fields(output%results, model, mesh, points, state, error)
-    else
-      call publish_hdf5_file(output%results%points%file, error)
+      if (.not. allocated(error)) &
+        call write_increment_fields(output%results, model, mesh, points, state, error)
     end if
+    call publish_if_due(output, error)
   end subroutine write_rows_and_fields
+
+  !> Notes that results wait, and writes the tables when too many of their rows are in memory.
+  subroutine limit_waiting(output, error)
+    type(run_output_t), intent(inout) :: output        !! open
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+
+    output%publication%is_waiting = .true.
+    if (n_waiting(output%tables) < most_waiting) return
+    call write_tables(output%tables, output%results%points%file, error)
+  end subroutine limit_waiting
+
+  !> Publishes what waits when the last time is long enough ago.
+  subroutine publish_if_due(output, error)
+    type(run_output_t), intent(inout) :: output        !! open
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+
+    if (allocated(error)) return
+    if (is_publication_due(output%publication, wall_time())) call publish_output(output, error)
+  end subroutine publish_if_due
+
+  !> Makes everything that was written visible to a reader of the results.
+  subroutine publish_output(output, error)
+    type(run_output_t), intent(inout) :: output      !! open, nothing waits
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+
+    if (.not. output%publication%is_waiting) return
+    call write_tables(output%tables, output%results%points%file, error)
+    call publish_results(output%results, error)
+    if (.not. allocated(error)) call note_publication(output%publication, wall_time())
+  end subroutine publish_output
+
+  !> An increment that takes long does not hide the one before it. A failure is told after the
+  !! attempt.
+  subroutine publish_between_iterations(watch)
+    class(run_output_t), intent(inout) :: watch !! open; perhaps nothing waits any more
+    type(error_t), allocatable :: failure
+    real(dp) :: clock(2)
+
+    if (allocated(watch%failure)) return
+    if (.not. is_publication_due(watch%publication, wall_time())) return
+    call cpu_time(clock(1))
+    call publish_output(watch, failure)
+    call move_alloc(failure, watch%failure)
+    call cpu_time(clock(2))
+    watch%log%output_seconds = watch%log%output_seconds + clock(2) - clock(1)
+  end subroutine publish_between_iterations
 
   !> Writes the fields of the last accepted increment before a run ends early, unless they are
   !! there already.
@@ -206,29 +260,52 @@ contains
 
     if (output%n_shown == state%increment_total) return
     output%n_shown = state%increment_total
+    output%publication%is_waiting = .true.
     call write_increment_fields(output%results, model, mesh, points, state, error)
   end subroutine write_last_state
 
-  !> Writes the summary and closes everything.
+  !> Publishes the results, writes the summary and closes everything. The results come first: who
+  !! reads in the log how a run has ended finds all of them.
   subroutine close_output(output, model, state, exit_code, error)
     type(run_output_t), intent(inout) :: output      !! closed
     type(model_t), intent(in) :: model               !! node sets
     type(run_state_t), intent(in) :: state           !! at the end of the run
     integer, intent(in) :: exit_code                 !! of the program
     type(error_t), allocatable, intent(out) :: error !! exit_file: the first one that occurs
-    type(error_t), allocatable :: failure, results_failure
+    type(error_t), allocatable :: failure
+    integer :: code
 
     if (.not. output%quiet) call end_progress()
-    call log_summary(output%log, model, state, output%verdict, exit_code, error)
+    code = exit_code
+    call close_fields(output, error)
+    if (allocated(error)) then
+      if (any(code == [exit_ok, exit_expectation])) code = error%code
+      call log_message(output%log, error%message, failure)
+    end if
+    call log_summary(output%log, model, state, output%verdict, code, failure)
+    call keep_first(error, failure)
     call close_log(output%log, failure)
     call keep_first(error, failure)
     call close_text_file(output%status%file, failure)
     call keep_first(error, failure)
     call close_text_file(output%history, failure)
     call keep_first(error, failure)
-    call close_results(output%results, results_failure)
-    call keep_first(error, results_failure)
   end subroutine close_output
+
+  !> Publishes and closes the results. Those that have failed before are only closed.
+  subroutine close_fields(output, error)
+    type(run_output_t), intent(inout) :: output      !! its results are closed
+    type(error_t), allocatable, intent(out) :: error !! exit_file
+    real(dp) :: clock(2)
+
+    call cpu_time(clock(1))
+    associate (file => output%results%points%file)
+      if (.not. file%has_failed) call write_tables(output%tables, file, error)
+    end associate
+    call close_results(output%results, error)
+    call cpu_time(clock(2))
+    output%log%output_seconds = output%log%output_seconds + clock(2) - clock(1)
+  end subroutine close_fields
 
   !> Keeps an error unless there is one already.
   pure subroutine keep_first(error, failure)

@@ -9,6 +9,7 @@ module mpm_run_state
   use mpm_locking_meter, only: measure_checkerboard, n_active_patches
   use mpm_model, only: model_t
   use mpm_patches, only: patches_t
+  use mpm_publication, only: default_interval
   use mpm_system, only: body_t, system_t
   use mpm_text, only: integer_text
   implicit none
@@ -32,6 +33,7 @@ module mpm_run_state
     integer :: n_threads = 1               !! OpenMP threads
     logical :: quiet = .false.             !! .true.: no progress on the terminal
     logical :: verbose = .false.           !! .true.: every Newton iteration on the terminal
+    real(dp) :: publish_interval = default_interval !! least time between publications [s]
   end type run_info_t
 
   !> Where a run stands after an attempt at an increment. The fields of an attempt that failed

@@ -1,20 +1,23 @@
 !> The group /tessera of JOB.vtkhdf: the deck, the program, and tables over the run.
+!!
+!! Rows of the tables wait in memory until write_tables.
 module mpm_run_tables
   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
   use mpm_error, only: error_t
   use mpm_hdf5_file, only: hdf5_file_t, make_group, write_integers_attribute, write_text, &
                            write_text_attribute
-  use mpm_hdf5_series, only: append_rows, create_series, kind_float64, kind_int32, &
-                             kind_int64, series_layout_t, series_t
+  use mpm_hdf5_series, only: kind_float64, kind_int32, kind_int64, series_layout_t
   use mpm_history_columns, only: history_column_t
   use mpm_kinds, only: dp, ip
   use mpm_ledger, only: ledger_t
   use mpm_newton_report, only: newton_report_t
+  use mpm_row_buffer, only: create_buffer, hold_rows, row_buffer_t, write_buffer
   use mpm_run_state, only: run_info_t, run_state_t
   implicit none
   private
   public :: run_tables_t, open_tables
   public :: append_history, append_iterations, append_ledger
+  public :: add_waiting, n_waiting, write_tables
 
   character(13), parameter :: iteration_columns(12) = [character(13) :: "step", "increment", &
     "attempt", "iteration", "residual", "kinematics", "stress", "assembly", "factorisation", &
@@ -33,9 +36,9 @@ module mpm_run_tables
 
   !> The tables; each column is a dataset.
   type :: run_tables_t
-    type(series_t), allocatable :: history(:)    !! step, increment, time, then the *HISTORY ones
-    type(series_t), allocatable :: iterations(:) !! (12)
-    type(series_t), allocatable :: ledger(:)     !! (20)
+    type(row_buffer_t), allocatable :: history(:)    !! step, increment, time, those of *HISTORY
+    type(row_buffer_t), allocatable :: iterations(:) !! (12)
+    type(row_buffer_t), allocatable :: ledger(:)     !! (20)
   end type run_tables_t
 
 contains
@@ -68,7 +71,7 @@ contains
 
   !> Creates the columns of the history.
   subroutine create_history(series, file, columns, error)
-    type(series_t), allocatable, intent(out) :: series(:) !! without rows
+    type(row_buffer_t), allocatable, intent(out) :: series(:) !! without rows
     type(hdf5_file_t), intent(inout) :: file              !! JOB.vtkhdf
     type(history_column_t), intent(in) :: columns(:)      !! of *HISTORY
     type(error_t), allocatable, intent(inout) :: error    !! exit_file
@@ -76,19 +79,19 @@ contains
 
     allocate (series(size(columns) + 3))
     call make_group(file, "/tessera/history", error)
-    call create_series(series(1), file, "/tessera/history/step", series_layout_t(kind_int32), error)
-    call create_series(series(2), file, "/tessera/history/increment", &
+    call create_buffer(series(1), file, "/tessera/history/step", series_layout_t(kind_int32), error)
+    call create_buffer(series(2), file, "/tessera/history/increment", &
                        series_layout_t(kind_int32), error)
-    call create_series(series(3), file, "/tessera/history/time", series_layout_t(), error)
+    call create_buffer(series(3), file, "/tessera/history/time", series_layout_t(), error)
     do i = 1, size(columns)
-      call create_series(series(i + 3), file, "/tessera/history/"//link_name(columns(i)%name), &
+      call create_buffer(series(i + 3), file, "/tessera/history/"//link_name(columns(i)%name), &
                          series_layout_t(), error)
     end do
   end subroutine create_history
 
   !> Creates the columns of the iterations.
   subroutine create_iterations(series, file, error)
-    type(series_t), allocatable, intent(out) :: series(:) !! without rows
+    type(row_buffer_t), allocatable, intent(out) :: series(:) !! without rows
     type(hdf5_file_t), intent(inout) :: file              !! JOB.vtkhdf
     type(error_t), allocatable, intent(inout) :: error    !! exit_file
     integer :: i, kind
@@ -102,14 +105,14 @@ contains
       case default
         kind = kind_float64
       end select
-      call create_series(series(i), file, "/tessera/iterations/"//trim(iteration_columns(i)), &
+      call create_buffer(series(i), file, "/tessera/iterations/"//trim(iteration_columns(i)), &
                          series_layout_t(kind), error)
     end do
   end subroutine create_iterations
 
   !> Creates the columns of the ledger.
   subroutine create_ledger(series, file, error)
-    type(series_t), allocatable, intent(out) :: series(:) !! without rows
+    type(row_buffer_t), allocatable, intent(out) :: series(:) !! without rows
     type(hdf5_file_t), intent(inout) :: file              !! JOB.vtkhdf
     type(error_t), allocatable, intent(inout) :: error    !! exit_file
     type(series_layout_t) :: layout
@@ -127,35 +130,31 @@ contains
       case default
         layout%kind = kind_float64
       end select
-      call create_series(series(i), file, "/tessera/ledger/"//trim(ledger_columns(i)), layout, &
+      call create_buffer(series(i), file, "/tessera/ledger/"//trim(ledger_columns(i)), layout, &
                          error)
     end do
   end subroutine create_ledger
 
   !> Appends the values of *HISTORY.
-  subroutine append_history(tables, file, state, values, error)
-    type(run_tables_t), intent(inout) :: tables      !! longer
-    type(hdf5_file_t), intent(inout) :: file         !! JOB.vtkhdf
-    type(run_state_t), intent(in) :: state           !! step, increment, time
-    real(dp), intent(in) :: values(:)                !! of the columns
-    type(error_t), allocatable, intent(out) :: error !! exit_file
+  pure subroutine append_history(tables, state, values)
+    type(run_tables_t), intent(inout) :: tables !! longer
+    type(run_state_t), intent(in) :: state      !! step, increment, time
+    real(dp), intent(in) :: values(:)           !! of the columns
     integer :: i
 
-    call append_rows(tables%history(1), file, [int(state%step, ip)], error)
-    call append_rows(tables%history(2), file, [int(state%increment, ip)], error)
-    call append_rows(tables%history(3), file, [state%time], error)
+    call hold_rows(tables%history(1), [int(state%step, ip)])
+    call hold_rows(tables%history(2), [int(state%increment, ip)])
+    call hold_rows(tables%history(3), [state%time])
     do i = 1, size(values)
-      call append_rows(tables%history(i + 3), file, values(i:i), error)
+      call hold_rows(tables%history(i + 3), values(i:i))
     end do
   end subroutine append_history
 
   !> Appends the iterations of an attempt, from the residual before the first correction on.
-  subroutine append_iterations(tables, file, state, report, error)
-    type(run_tables_t), intent(inout) :: tables      !! longer
-    type(hdf5_file_t), intent(inout) :: file         !! JOB.vtkhdf
-    type(run_state_t), intent(in) :: state           !! step, increment, attempt
-    type(newton_report_t), intent(in) :: report      !! of the attempt
-    type(error_t), allocatable, intent(out) :: error !! exit_file
+  pure subroutine append_iterations(tables, state, report)
+    type(run_tables_t), intent(inout) :: tables !! longer
+    type(run_state_t), intent(in) :: state      !! step, increment, attempt
+    type(newton_report_t), intent(in) :: report !! of the attempt
     real(dp), allocatable :: seconds(:, :)
     integer, allocatable  :: linear(:, :)
     integer :: i, j, n
@@ -172,56 +171,106 @@ contains
         if (i <= size(report%seconds, 2)) seconds(i, :) = report%seconds(:, i)
       end if
     end do
-    call append_rows(tables%iterations(1), file, [(int(state%step, ip), i=0, n)], error)
-    call append_rows(tables%iterations(2), file, [(int(state%increment, ip), i=0, n)], error)
-    call append_rows(tables%iterations(3), file, [(int(state%attempt, ip), i=0, n)], error)
-    call append_rows(tables%iterations(4), file, [(int(i, ip), i=0, n)], error)
-    call append_rows(tables%iterations(5), file, report%residual(0:n), error)
+    call hold_rows(tables%iterations(1), [(int(state%step, ip), i=0, n)])
+    call hold_rows(tables%iterations(2), [(int(state%increment, ip), i=0, n)])
+    call hold_rows(tables%iterations(3), [(int(state%attempt, ip), i=0, n)])
+    call hold_rows(tables%iterations(4), [(int(i, ip), i=0, n)])
+    call hold_rows(tables%iterations(5), report%residual(0:n))
     do j = 1, size(seconds, 2)
-      call append_rows(tables%iterations(j + 5), file, seconds(:, j), error)
+      call hold_rows(tables%iterations(j + 5), seconds(:, j))
     end do
     do j = 1, size(linear, 2)
-      call append_rows(tables%iterations(column_of_gmres + j - 1), file, int(linear(:, j), ip), &
-                       error)
+      call hold_rows(tables%iterations(column_of_gmres + j - 1), int(linear(:, j), ip))
     end do
   end subroutine append_iterations
 
   !> Appends the ledger of an increment.
-  subroutine append_ledger(tables, file, state, ledger, seconds, error)
-    type(run_tables_t), intent(inout) :: tables      !! longer
-    type(hdf5_file_t), intent(inout) :: file         !! JOB.vtkhdf
-    type(run_state_t), intent(in) :: state           !! step, increment, time, checkerboard
-    type(ledger_t), intent(in) :: ledger             !! after the increment
-    real(dp), intent(in) :: seconds(3)               !! since the last row: location of points and
-                                                     !! output (CPU), point loop (wall) [s]
-    type(error_t), allocatable, intent(out) :: error !! exit_file
+  pure subroutine append_ledger(tables, state, ledger, seconds)
+    type(run_tables_t), intent(inout) :: tables !! longer
+    type(run_state_t), intent(in) :: state      !! step, increment, time, checkerboard
+    type(ledger_t), intent(in) :: ledger        !! after the increment
+    real(dp), intent(in) :: seconds(3)          !! since the last row: location of points and
+                                                !! output (CPU), point loop (wall) [s]
     real(dp) :: checkerboard(1)
     integer :: i
 
     checkerboard = ieee_value(1.0_dp, ieee_quiet_nan)
     if (allocated(state%checkerboard)) checkerboard = state%checkerboard
-    call append_rows(tables%ledger(1), file, [int(state%step, ip)], error)
-    call append_rows(tables%ledger(2), file, [int(state%increment, ip)], error)
-    call append_rows(tables%ledger(3), file, [state%time], error)
-    call append_rows(tables%ledger(4), file, [int(ledger%n_points, ip)], error)
-    call append_rows(tables%ledger(5), file, [ledger%mass], error)
-    call append_rows(tables%ledger(6), file, [ledger%volume], error)
-    call append_rows(tables%ledger(7), file, [int(ledger%n_lost, ip)], error)
-    call append_rows(tables%ledger(8), file, [int(ledger%n_extrapolated, ip)], error)
-    call append_rows(tables%ledger(column_of_centre), file, reshape(ledger%centre, [3, 1]), error)
-    call append_rows(tables%ledger(column_of_checkerboard), file, checkerboard, error)
-    call append_rows(tables%ledger(column_of_share), file, [state%ghost_share_now], error)
-    call append_rows(tables%ledger(column_of_share + 1), file, state%eigenvalue(1:1), error)
-    call append_rows(tables%ledger(column_of_share + 2), file, state%eigenvalue(2:2), error)
-    call append_rows(tables%ledger(column_of_balance), file, [state%balance_now], error)
-    call append_rows(tables%ledger(column_of_unknowns), file, [int(state%n_unknowns, ip)], error)
-    call append_rows(tables%ledger(column_of_unknowns + 1), file, [int(state%n_nonzeros, ip)], &
-                     error)
-    call append_rows(tables%ledger(column_of_unknowns + 2), file, [state%factor_memory], error)
+    call hold_rows(tables%ledger(1), [int(state%step, ip)])
+    call hold_rows(tables%ledger(2), [int(state%increment, ip)])
+    call hold_rows(tables%ledger(3), [state%time])
+    call hold_rows(tables%ledger(4), [int(ledger%n_points, ip)])
+    call hold_rows(tables%ledger(5), [ledger%mass])
+    call hold_rows(tables%ledger(6), [ledger%volume])
+    call hold_rows(tables%ledger(7), [int(ledger%n_lost, ip)])
+    call hold_rows(tables%ledger(8), [int(ledger%n_extrapolated, ip)])
+    call hold_rows(tables%ledger(column_of_centre), reshape(ledger%centre, [3, 1]))
+    call hold_rows(tables%ledger(column_of_checkerboard), checkerboard)
+    call hold_rows(tables%ledger(column_of_share), [state%ghost_share_now])
+    call hold_rows(tables%ledger(column_of_share + 1), state%eigenvalue(1:1))
+    call hold_rows(tables%ledger(column_of_share + 2), state%eigenvalue(2:2))
+    call hold_rows(tables%ledger(column_of_balance), [state%balance_now])
+    call hold_rows(tables%ledger(column_of_unknowns), [int(state%n_unknowns, ip)])
+    call hold_rows(tables%ledger(column_of_unknowns + 1), [int(state%n_nonzeros, ip)])
+    call hold_rows(tables%ledger(column_of_unknowns + 2), [state%factor_memory])
     do i = 1, size(seconds)
-      call append_rows(tables%ledger(column_of_location + i - 1), file, seconds(i:i), error)
+      call hold_rows(tables%ledger(column_of_location + i - 1), seconds(i:i))
     end do
   end subroutine append_ledger
+
+  !> Writes the rows that wait, a block per column.
+  subroutine write_tables(tables, file, error)
+    type(run_tables_t), intent(inout) :: tables        !! nothing waits
+    type(hdf5_file_t), intent(inout) :: file           !! JOB.vtkhdf
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+
+    call write_columns(tables%history, file, error)
+    call write_columns(tables%iterations, file, error)
+    call write_columns(tables%ledger, file, error)
+  end subroutine write_tables
+
+  !> Writes the rows of a table that wait.
+  subroutine write_columns(column, file, error)
+    type(row_buffer_t), intent(inout) :: column(:)     !! nothing waits
+    type(hdf5_file_t), intent(inout) :: file           !! JOB.vtkhdf
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+    integer :: i
+
+    do i = 1, size(column)
+      call write_buffer(column(i), file, error)
+    end do
+  end subroutine write_columns
+
+  !> Rows of the longest table that wait.
+  pure integer function n_waiting(tables)
+    type(run_tables_t), intent(in) :: tables
+
+    n_waiting = max(tables%history(1)%n_waiting, tables%iterations(1)%n_waiting, &
+                    tables%ledger(1)%n_waiting)
+  end function n_waiting
+
+  !> Adds the rows that wait to those that a file has.
+  pure subroutine add_waiting(tables, n_rows)
+    type(run_tables_t), intent(in) :: tables
+    integer(ip), intent(inout) :: n_rows(:) !! (datasets of JOB.vtkhdf)
+
+    call add_columns(tables%history, n_rows)
+    call add_columns(tables%iterations, n_rows)
+    call add_columns(tables%ledger, n_rows)
+  end subroutine add_waiting
+
+  !> Adds the rows of a table that wait.
+  pure subroutine add_columns(column, n_rows)
+    type(row_buffer_t), intent(in) :: column(:)
+    integer(ip), intent(inout) :: n_rows(:) !! (datasets of JOB.vtkhdf)
+    integer :: i
+
+    do i = 1, size(column)
+      associate (n => n_rows(column(i)%series%number))
+        n = n + int(column(i)%n_waiting, ip)
+      end associate
+    end do
+  end subroutine add_columns
 
   !> A name without the separator of HDF5 paths.
   pure function link_name(name) result(link)

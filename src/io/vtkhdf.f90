@@ -231,10 +231,19 @@ contains
     type(vtkhdf_t), intent(inout) :: vtk               !! after the last field of a step
     type(error_t), allocatable, intent(inout) :: error !! exit_file
 
-    call write_integers_attribute(vtk%file, "/VTKHDF/Steps", "NSteps", [int(vtk%n_steps, ip)], &
-                                  error)
+    call count_steps(vtk, error)
     call publish_hdf5_file(vtk%file, error)
   end subroutine flush_vtkhdf
+
+  !> Tells a reader how many steps there are, if any are new.
+  subroutine count_steps(vtk, error)
+    type(vtkhdf_t), intent(inout) :: vtk               !! after the last field of a step
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+
+    if (.not. vtk%file%has_news) return
+    call write_integers_attribute(vtk%file, "/VTKHDF/Steps", "NSteps", [int(vtk%n_steps, ip)], &
+                                  error)
+  end subroutine count_steps
 
   !> Where a file stands after a flush.
   pure subroutine mark_vtkhdf(vtk, mark)
@@ -270,12 +279,13 @@ contains
     call write_integers_attribute(vtk%file, "/VTKHDF/Steps", "NSteps", [mark%n_steps], error)
   end subroutine resume_vtkhdf
 
-  !> Closes a file; no effect on a closed one. After an error the steps since the last flush are
-  !! lost, and a file that was never flushed is not there.
+  !> Flushes and closes a file; no effect on a closed one. After an error the steps since the last
+  !! flush are lost, and a file that was never flushed is not there.
   subroutine close_vtkhdf(vtk, error)
     type(vtkhdf_t), intent(inout) :: vtk               !! closed
     type(error_t), allocatable, intent(inout) :: error !! exit_file
 
+    if (vtk%file%is_open .and. .not. vtk%file%has_failed) call count_steps(vtk, error)
     call close_hdf5_file(vtk%file, error)
   end subroutine close_vtkhdf
 
