@@ -93,7 +93,8 @@ def kill_after(program, folder, after):
     """Runs the bar and kills it after some increments."""
     status = folder / "bar.sta"
     status.unlink(missing_ok=True)
-    with subprocess.Popen([str(program), "-q", "-f", "bar.inp"], cwd=folder) as process:
+    command = [str(program), "-q", "--publish", "0", "-f", "bar.inp"]
+    with subprocess.Popen(command, cwd=folder) as process:
         while not status.exists() or status.read_text().count("\n") < after:
             assert process.poll() is None
         process.kill()

@@ -65,6 +65,7 @@ class Disturbance:
     at: int  # number of the call
     times: int = 1
     calls: str = ""  # calls that count, such as "write,rename"; empty: all
+    path: str = JOB  # part of the paths that count
 
 
 def build_faults(folder):
@@ -85,19 +86,24 @@ def environment(library, fault=None, log=None):
         settings["FAULT_LOG"] = str(log)
     if fault is not None:
         settings.update(FAULT_DO=fault.do, FAULT_AT=str(fault.at), FAULT_TIMES=str(fault.times))
+        settings["FAULT_PATH"] = fault.path
         if fault.calls:
             settings["FAULT_CALLS"] = f",{fault.calls},"
     return settings
 
 
 class SmallRun:
-    """Runs the job in a folder, with faults if asked for."""
+    """Runs the job in a folder, with faults if asked for. Every increment appears at once unless
+    seconds between publications are given; "" is the default of the program."""
 
-    def __init__(self, program: Path, library: Path, folder: Path, size: float = 0.125) -> None:
+    def __init__(
+        self, program: Path, library: Path, folder: Path, size: float = 0.125, publish: str = "0"
+    ) -> None:
         self.program, self.library, self.folder = program, library, folder
         folder.mkdir(exist_ok=True)
         (folder / f"{JOB}.inp").write_text(deck_with(size), encoding="utf-8")
-        self.command = [str(program), "-q", "-f", f"{JOB}.inp"]
+        self.options = ["-q", *(["--publish", publish] if publish else [])]
+        self.command = [str(program), *self.options, "-f", f"{JOB}.inp"]
 
     def run(self, fault=None):
         """Runs to the end or to the fault; the finished process."""
@@ -117,7 +123,7 @@ class SmallRun:
         if not there:
             return None
         return subprocess.run(
-            [str(self.program), "-q", "--restart", there[0], f"{JOB}.inp"],
+            [str(self.program), *self.options, "--restart", there[0], f"{JOB}.inp"],
             cwd=self.folder,
             env=environment(self.library, fault, self.folder / "calls"),
             capture_output=True,

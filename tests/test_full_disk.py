@@ -106,6 +106,39 @@ def test_interrupted_write_changes_nothing(whole, tessera, library, tmp_path, do
         check_whole(run, whole)
 
 
+@pytest.mark.parametrize("publish", ["", "1000"])
+def test_results_that_lag_are_whole_on_a_full_disk(tessera, library, tmp_path, publish):
+    """What was not published yet may be lost, and nothing else; the run goes on."""
+    whole = SmallRun(tessera, library, tmp_path / "whole", publish=publish)
+    assert whole.run(Disturbance("0", 0, calls=CHANGING)).returncode == 0
+    moments = random.Random(2)
+    for at in moments.sample(range(1, whole.n_calls * 9 // 10), 8):
+        run = SmallRun(tessera, library, tmp_path / str(at), publish=publish)
+        process = run.run(Disturbance(str(errno.ENOSPC), at, FOREVER, CHANGING))
+        check_error(process, os.strerror(errno.ENOSPC))
+        for name, found, expected in zip(FILES, run.results, whole.results):
+            if found is not None:
+                check_part(found, expected, name)
+        if run.results[0] is not None:
+            assert check_tables(run.results[0], FILES[0]) <= n_converged(run.folder)
+        assert not list(run.folder.glob("*.next"))
+        restarted = run.go_on()
+        if restarted is not None:
+            assert (restarted.returncode, restarted.stderr) == (0, "")
+            check_whole(run, whole)
+
+
+def test_other_file_that_fails_costs_no_results(whole, tessera, library, tmp_path):
+    """A line of the status file is refused: all increments before it are there."""
+    run = SmallRun(tessera, library, tmp_path / "run", publish="1000")
+    process = run.run(Disturbance(str(errno.ENOSPC), 6, FOREVER, "write", path=".sta"))
+    check_error(process, os.strerror(errno.ENOSPC))
+    n_increments = check_tables(run.results[0], FILES[0])
+    assert n_increments == n_converged(run.folder) >= 3
+    for name, found, expected in zip(FILES, run.results, whole.results):
+        assert check_part(found, expected, name) == n_increments + 1
+
+
 # --- file systems --------------------------------------------------------------------------------
 
 
@@ -134,7 +167,7 @@ def run_into(program, folder, deck_folder):
     deck = deck_folder / f"{JOB}.inp"
     deck.write_text(deck_with(), encoding="utf-8")
     return subprocess.run(
-        [str(program), "-q", "-o", str(folder), str(deck)],
+        [str(program), "-q", "--publish", "0", "-o", str(folder), str(deck)],
         env={**os.environ, "OMP_NUM_THREADS": "1"},
         capture_output=True,
         text=True,

@@ -7,6 +7,7 @@ TESSERA_KILLS is the number of moments, 50 by default. The run prints how many i
 import csv
 import os
 import random
+import re
 import time
 
 import pytest
@@ -140,6 +141,52 @@ def test_killed_restart_can_be_gone_on_from(tessera, library, tmp_path):
             second = Disturbance(do, moments.randrange(1, 300))
             assert run.go_on(second).returncode == SIGKILLED, (first, second)
         assert check_restart(run, whole)
+
+
+def check_lag(folder, whole, expected):
+    """What must hold after a kill of results that are published from time to time: whole files
+    with the first increments, all those that a restart file stands for; how many they lack."""
+    found = [contents(folder / name) for name in FILES]
+    converged = n_converged(folder)
+    written = check_texts(folder, whole)
+    log = "\n".join(complete_lines(folder / f"{JOB}.log"))
+    needed = [int(n) for n in re.findall(r"restart file .* written at .* increment (\d+),", log)]
+    if found[0] is None:
+        assert converged == 0
+        return 0
+    n_steps = check_part(found[0], expected[0], FILES[0])
+    n_increments = check_tables(found[0], FILES[0])
+    assert n_steps == n_increments + 1
+    assert max(needed, default=0) <= n_increments <= min(converged, written)
+    if found[1] is not None:
+        assert max(needed, default=0) + 1 <= check_part(found[1], expected[1], FILES[1]) <= n_steps
+    job = open_job(str(folder / JOB))
+    assert job.n_increments == n_increments
+    job.close()
+    return converged - n_increments
+
+
+@pytest.mark.parametrize("publish", ["", "1000"])
+def test_results_that_lag_are_whole_after_a_kill(tessera, library, tmp_path, publish):
+    """With the default, and published before restart files and at the end only."""
+    whole = SmallRun(tessera, library, tmp_path / "whole", publish=publish)
+    assert whole.run().returncode == 0
+    expected = whole.results
+    killed = SmallRun(tessera, library, tmp_path / "killed", publish=publish)
+    moments = random.Random(SEED)
+    lags, went_on = [], 0
+    for i in range(20):
+        killed.clear()
+        do = moments.choice(("kill-before", "kill-half", "kill-after"))
+        # With a clock in the run not every run has the same calls.
+        fault = Disturbance(do, moments.randrange(1, whole.n_calls + 1))
+        assert killed.run(fault).returncode in (SIGKILLED, 0), fault
+        lags.append(check_lag(killed.folder, whole.folder, expected))
+        if i % 3 == 0:
+            went_on += check_restart(killed, whole)
+    assert went_on >= 3
+    if publish:
+        assert max(lags) >= 2
 
 
 @pytest.mark.parametrize("calls", ["exchange", "exchange,link"])

@@ -330,7 +330,8 @@ def test_progress_is_one_line_on_a_terminal(tessera, tmp_path):
 
 def test_killed_run_leaves_readable_files(tessera, tmp_path):
     (tmp_path / "job.inp").write_text(bar(inc=20000, size=5e-5), encoding="utf-8")
-    with subprocess.Popen([str(tessera), "-q", "job.inp"], cwd=tmp_path) as process:
+    command = [str(tessera), "-q", "--publish", "0", "job.inp"]
+    with subprocess.Popen(command, cwd=tmp_path) as process:
         status, deadline = tmp_path / "job.sta", time.monotonic() + 60
         while not status.exists() or status.read_text().count("\n") < 12:
             assert process.poll() is None

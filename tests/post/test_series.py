@@ -237,7 +237,8 @@ def test_locked_file_is_read_after_a_while(twin):
 def test_job_that_is_still_running_can_be_read(tessera_release, tmp_path):
     (tmp_path / "bar.inp").write_text(bar_deck(inc=2000, size=5e-4), encoding="utf-8")
     status = tmp_path / "bar.sta"
-    with subprocess.Popen([str(tessera_release), "-q", "bar.inp"], cwd=tmp_path) as process:
+    command = [str(tessera_release), "-q", "--publish", "0", "bar.inp"]
+    with subprocess.Popen(command, cwd=tmp_path) as process:
         try:
             while not status.exists() or status.read_text().count("\n") < 8:
                 assert process.poll() is None
