@@ -68,10 +68,10 @@ class Disturbance:
     path: str = JOB  # part of the paths that count
 
 
-def build_faults(folder):
-    """Compiles the library of faults."""
-    library = folder / "io_faults.so"
-    source = ROOT / "tests" / "faults" / "io_faults.c"
+def build_faults(folder, name="io_faults"):
+    """Compiles a library of faults."""
+    library = folder / f"{name}.so"
+    source = ROOT / "tests" / "faults" / f"{name}.c"
     command = ["cc", "-shared", "-fPIC", "-O1", "-o", str(library), str(source), "-ldl"]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     if result.returncode != 0:

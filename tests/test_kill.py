@@ -189,6 +189,17 @@ def test_results_that_lag_are_whole_after_a_kill(tessera, library, tmp_path, pub
         assert max(lags) >= 2
 
 
+def test_long_increment_does_not_hide_the_last(tessera, library, tmp_path):
+    """Two increments, of which only the second takes time: the first one, which is not due when it
+    is accepted, appears between iterations, the second one at the end. Each publication exchanges
+    two files, but for the very first."""
+    clock = build_faults(tmp_path, "clock_faults")
+    run = SmallRun(tessera, f"{clock}:{library}", tmp_path / "run", size=0.5, publish="")
+    assert run.run(Disturbance("0", 0, calls="exchange")).returncode == 0
+    assert check_tables(run.results[0], FILES[0]) == 2
+    assert run.n_calls == 4
+
+
 @pytest.mark.parametrize("calls", ["exchange", "exchange,link"])
 def test_file_system_that_cannot_exchange_names(tessera, library, tmp_path, calls):
     """The old file gets a second name, or there is a new copy each time; kills spoil nothing."""

@@ -1,11 +1,9 @@
 !> Going on with the result files of an interrupted run.
 module mpm_output_resume
-  use mpm_clock, only: wall_time
   use mpm_error, only: error_t
   use mpm_kinds, only: ip
   use mpm_model, only: model_t
   use mpm_output_mark, only: output_mark_t
-  use mpm_publication, only: note_publication
   use mpm_result_paths, only: result_paths_t
   use mpm_results_file, only: close_results, publish_results
   use mpm_run_log, only: resume_log
@@ -65,7 +63,6 @@ contains
       output%n_shown = int(mark%n_shown)
       if (.not. allocated(error)) call resume_texts(output, paths, model, mark, message, error)
       call publish_results(results, error)
-      call note_publication(output%publication, wall_time())
       if (allocated(error)) call close_results(results, error)
     end associate
   end subroutine resume_output

@@ -260,7 +260,6 @@ contains
 
     if (output%n_shown == state%increment_total) return
     output%n_shown = state%increment_total
-    output%publication%is_waiting = .true.
     call write_increment_fields(output%results, model, mesh, points, state, error)
   end subroutine write_last_state
 
