@@ -194,10 +194,9 @@ contains
     call evaluate_expectations(output%verdict, points, model%patches, state)
     due = state%step == 0 .or. output%n_shown < 0 ! the first one, also after a restart
     if (.not. due) due = is_field_output_due(model%step(state%step), state)
-    if (due) then
+    if (due .and. .not. allocated(error)) then
       output%n_shown = state%increment_total
-      if (.not. allocated(error)) &
-        call write_increment_fields(output%results, model, mesh, points, state, error)
+      call write_increment_fields(output%results, model, mesh, points, state, error)
     end if
     call publish_if_due(output, error)
   end subroutine write_rows_and_fields

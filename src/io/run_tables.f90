@@ -242,11 +242,11 @@ contains
   end subroutine write_columns
 
   !> Rows of the longest table that wait.
-  pure integer function n_waiting(tables)
+  pure integer function n_waiting(tables) result(n)
     type(run_tables_t), intent(in) :: tables
 
-    n_waiting = max(tables%history(1)%n_waiting, tables%iterations(1)%n_waiting, &
-                    tables%ledger(1)%n_waiting)
+    n = max(tables%history(1)%n_waiting, tables%iterations(1)%n_waiting, &
+            tables%ledger(1)%n_waiting)
   end function n_waiting
 
   !> Adds the rows that wait to those that a file has.
