@@ -41,7 +41,7 @@ module mpm_run_output
     type(text_file_t)    :: history                  !! JOB_history.csv
     type(results_file_t) :: results                  !! JOB.vtkhdf and JOB_mesh.vtkhdf
     type(run_tables_t)   :: tables                   !! group /tessera of JOB.vtkhdf
-    type(publication_t)      :: publication          !! of the results and the tables
+    type(publication_t)  :: publication              !! of the results and the tables
     type(history_column_t), allocatable :: column(:) !! of *HISTORY
     type(verdict_t), allocatable :: verdict(:)       !! of *EXPECT
     logical :: quiet = .false.                       !! no progress on stderr
