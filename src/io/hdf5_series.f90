@@ -51,7 +51,7 @@ module mpm_hdf5_series
 
   !> Appends rows of reals or of integers.
   interface append_rows
-    module procedure append_reals, append_real_rows, append_integers
+    module procedure append_reals, append_real_rows, append_integers, append_indices
   end interface append_rows
 
 contains
@@ -123,7 +123,6 @@ contains
     integer(ip), intent(in) :: values(:)               !! (n_rows)
     type(error_t), allocatable, intent(inout) :: error !! exit_file
     integer(ip), allocatable, target :: buffer(:)
-    integer(c_int32_t), allocatable, target :: short(:)
     type(rows_t) :: rows
 
     call check_writable(file, error)
@@ -132,12 +131,38 @@ contains
     buffer(:) = values
     rows%memory_type = h5kind_to_type(ip, h5_integer_kind)
     rows%plain = c_loc(buffer)
-    if (series%layout%kind == kind_int32 .and. fills_chunk(series, file, size(values))) then
-      short = int(values, c_int32_t)
-      call pack_chunk(rows%packed, rows%n_bytes, c_loc(short), size(short), 4)
-    end if
     call write_rows(series, file, size(values), rows, error)
   end subroutine append_integers
+
+  !> Appends scalar rows of indices.
+  subroutine append_indices(series, file, values, error)
+    type(series_t), intent(in) :: series               !! grows
+    type(hdf5_file_t), intent(inout) :: file           !! that holds it
+    integer(c_int32_t), intent(in) :: values(:)        !! (n_rows)
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+
+    if (allocated(error)) return
+    call write_indices(series, file, size(values), values, error)
+  end subroutine append_indices
+
+  !> Writes indices behind the last row.
+  subroutine write_indices(series, file, n_rows, values, error)
+    type(series_t), intent(in) :: series               !! grows
+    type(hdf5_file_t), intent(inout) :: file           !! that holds it
+    integer, intent(in) :: n_rows                      !! rows in values
+    integer(c_int32_t), intent(in), target :: values(*) !! row by row
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+    type(rows_t) :: rows
+
+    call check_writable(file, error)
+    if (allocated(error)) return
+    rows%memory_type = h5kind_to_type(c_int32_t, h5_integer_kind)
+    rows%plain = c_loc(values)
+    if (series%layout%kind == kind_int32 .and. fills_chunk(series, file, n_rows)) then
+      call pack_chunk(rows%packed, rows%n_bytes, rows%plain, n_rows, 4)
+    end if
+    call write_rows(series, file, n_rows, rows, error)
+  end subroutine write_indices
 
   !> Writes reals behind the last row.
   subroutine write_reals(series, file, n_rows, values, error)

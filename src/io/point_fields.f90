@@ -6,7 +6,8 @@ module mpm_point_fields
   use mpm_tensor, only: det_m1, deviator_norm
   implicit none
   private
-  public :: component_suffix, is_integer_field, n_field_components, point_field, point_values
+  public :: component_suffix, gather_field, gather_indices, gather_vectors, is_integer_field
+  public :: n_field_components, point_field, point_values
 
   real(dp), parameter :: identity(3, 3) = &
     reshape([1.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [3, 3])
@@ -80,48 +81,66 @@ contains
     values(:size(field, 1)) = field(:, 1)
   end function point_values
 
-  !> Values of a field at some points. TAU = JBAR S; MISES and PRESSURE are those of S, pressure
-  !! positive in compression; F row by row. Without a host ELEMENT and PATCH are 0.
+  !> Values of a field at some points, see gather_field.
   pure function point_field(points, patches, name, items) result(values)
     type(points_t), intent(in)  :: points  !! converged state
     type(patches_t), intent(in) :: patches !! for PATCH
     character(*), intent(in) :: name       !! deck name, upper case
     integer, intent(in) :: items(:)        !! indices of the points
     real(dp), allocatable :: values(:, :)  !! (n_field_components, size(items)), 0 for an unknown name
-    integer :: i, n_dim
+    integer, allocatable :: numbers(:)
 
-    n_dim = size(points%u, 1)
-    allocate (values(max(1, n_field_components(name)), size(items)), source=0.0_dp)
+    if (is_integer_field(name)) then
+      allocate (values(1, size(items)))
+      call gather_indices(numbers, points, patches, name, items)
+      values(1, :) = real(numbers, dp)
+    else
+      call gather_field(values, points, name, items)
+    end if
+  end function point_field
+
+  !> Values of a field of reals at some points. TAU = JBAR S; MISES and PRESSURE are those of S,
+  !! pressure positive in compression; F row by row.
+  pure subroutine gather_field(values, points, name, items)
+    real(dp), allocatable, intent(inout) :: values(:, :) !! (n_field_components, size(items)), 0 for
+                                                         !! an unknown name; its memory is used again
+    type(points_t), intent(in) :: points !! converged state
+    character(*), intent(in) :: name     !! deck name, upper case
+    integer, intent(in) :: items(:)      !! indices of the points
+    integer :: i, p
+
+    if (name == "U") then
+      call gather_vectors(values, points%u, items)
+      return
+    end if
+    call make_room(values, max(1, n_field_components(name)), size(items))
     select case (name)
     case ("S")
-      values(:, :) = points%state%cauchy(:, items)
+      call gather_rows(values, points%state%cauchy, items)
     case ("TAU")
       do i = 1, size(items)
-        values(:, i) = points%state%jacobian_bar(items(i))*points%state%cauchy(:, items(i))
+        p = items(i)
+        values(:, i) = points%state%jacobian_bar(p)*points%state%cauchy(:, p)
       end do
     case ("LE")
-      values(:, :) = points%state%strain_e(:, items)
+      call gather_rows(values, points%state%strain_e, items)
     case ("F")
       do i = 1, size(items)
         values(:, i) = reshape(transpose(points%def_grad(:, :, items(i))), [9])
       end do
-    case ("U")
-      values(:n_dim, :) = points%u(:, items)
     case default
-      values(1, :) = scalar_field(points, patches, name, items)
+      call gather_scalars(values(1, :), points, name, items)
     end select
-  end function point_field
+  end subroutine gather_field
 
-  !> Values of a scalar field at some points.
-  pure function scalar_field(points, patches, name, items) result(values)
-    type(points_t), intent(in)  :: points  !! converged state
-    type(patches_t), intent(in) :: patches !! for PATCH
-    character(*), intent(in) :: name       !! deck name, upper case
-    integer, intent(in) :: items(:)        !! indices of the points
-    real(dp) :: values(size(items))        !! 0 for an unknown name
+  !> Values of a scalar field of reals at some points.
+  pure subroutine gather_scalars(values, points, name, items)
+    real(dp), intent(out) :: values(:)   !! (size(items)), 0 for an unknown name
+    type(points_t), intent(in) :: points !! converged state
+    character(*), intent(in) :: name     !! deck name, upper case
+    integer, intent(in) :: items(:)      !! indices of the points
     integer :: i
 
-    values = 0.0_dp
     select case (name)
     case ("PEEQ")
       values = points%state%hardening(1, items)
@@ -141,18 +160,79 @@ contains
       do i = 1, size(items)
         values(i) = -sum(points%state%cauchy(1:3, items(i)))/3.0_dp
       end do
+    case default
+      values = 0.0_dp
+    end select
+  end subroutine gather_scalars
+
+  !> Values of a field of indices at some points. Without a host ELEMENT and PATCH are 0.
+  pure subroutine gather_indices(values, points, patches, name, items)
+    integer, allocatable, intent(inout) :: values(:) !! (size(items)), 0 for an unknown name
+    type(points_t), intent(in)  :: points  !! converged state
+    type(patches_t), intent(in) :: patches !! for PATCH
+    character(*), intent(in) :: name       !! deck name, upper case
+    integer, intent(in) :: items(:)        !! indices of the points
+    integer :: i
+
+    if (allocated(values)) then
+      if (size(values) /= size(items)) deallocate (values)
+    end if
+    if (.not. allocated(values)) allocate (values(size(items)))
+    select case (name)
     case ("MAT")
-      values = real(points%material(items), dp)
+      values(:) = points%material(items)
     case ("ELEMENT")
-      values = real(points%element(items), dp)
+      values(:) = points%element(items)
     case ("PATCH")
       do i = 1, size(items)
-        if (points%element(items(i)) == 0) cycle
-        values(i) = real(patches%of_element(points%element(items(i))), dp)
+        values(i) = 0
+        if (points%element(items(i)) > 0) values(i) = patches%of_element(points%element(items(i)))
       end do
     case ("ID")
-      values = real(points%id(items), dp)
+      values(:) = points%id(items)
+    case default
+      values(:) = 0
     end select
-  end function scalar_field
+  end subroutine gather_indices
+
+  !> Vectors of some points with three components, the third 0 in the plane.
+  pure subroutine gather_vectors(values, vector, items)
+    real(dp), allocatable, intent(inout) :: values(:, :) !! (3, size(items))
+    real(dp), intent(in), contiguous :: vector(:, :)     !! (2 or 3, n)
+    integer, intent(in) :: items(:)                      !! indices of the points
+    integer :: i
+
+    call make_room(values, 3, size(items))
+    if (size(vector, 1) == 3) then
+      call gather_rows(values, vector, items)
+    else
+      do i = 1, size(items)
+        values(:, i) = [vector(1:2, items(i)), 0.0_dp]
+      end do
+    end if
+  end subroutine gather_vectors
+
+  !> Rows of some points.
+  pure subroutine gather_rows(values, row, items)
+    real(dp), intent(out), contiguous :: values(:, :) !! (n_columns, size(items))
+    real(dp), intent(in), contiguous  :: row(:, :)    !! (n_columns, n)
+    integer, intent(in) :: items(:)                   !! indices of the points
+    integer :: i
+
+    do i = 1, size(items)
+      values(:, i) = row(:, items(i))
+    end do
+  end subroutine gather_rows
+
+  !> Gives an array its shape. One that has it already keeps its memory.
+  pure subroutine make_room(values, n_columns, n_rows)
+    real(dp), allocatable, intent(inout) :: values(:, :) !! (n_columns, n_rows), without values
+    integer, intent(in) :: n_columns, n_rows
+
+    if (allocated(values)) then
+      if (size(values, 1) /= n_columns .or. size(values, 2) /= n_rows) deallocate (values)
+    end if
+    if (.not. allocated(values)) allocate (values(n_columns, n_rows))
+  end subroutine make_room
 
 end module mpm_point_fields

@@ -8,7 +8,8 @@ module mpm_results_file
   use mpm_material_points, only: points_t, status_removed
   use mpm_mesh, only: mesh_t
   use mpm_model, only: model_t, step_t
-  use mpm_point_fields, only: is_integer_field, n_field_components, point_field
+  use mpm_point_fields, only: gather_field, gather_indices, gather_vectors, is_integer_field, &
+                              n_field_components
   use mpm_run_state, only: run_state_t
   use mpm_vtkhdf, only: add_field, begin_vtk_step, chunk_for, close_vtkhdf, create_vtkhdf, &
                         flush_vtkhdf, in_space, on_cells, on_points, repeat_field, vtk_tetra, &
@@ -96,29 +97,32 @@ contains
     type(points_t), intent(in) :: points               !! converged state
     real(dp), intent(in) :: time                       !! total time
     type(error_t), allocatable, intent(inout) :: error !! exit_file
-    integer, allocatable :: kept(:)
+    integer, allocatable :: kept(:), numbers(:)
     real(dp), allocatable :: values(:, :)
     logical :: same_points
     integer :: i, n
 
     n = count(points%status /= status_removed)
-    kept = pack(points%place, points%status(points%place) /= status_removed) ! by id
+    kept = points%place ! by id
+    if (n < points%n) kept = pack(kept, points%status(kept) /= status_removed)
     same_points = n == results%n_written ! points may leave, but none comes back
     if (.not. same_points) then
       call write_cells(results%points, vtk_vertex, reshape([(i, i=1, n)], [1, n]), n, error)
     end if
     results%n_written = n
-    call begin_vtk_step(results%points, time, points%x(:, kept), error)
+    call gather_vectors(values, points%x, kept)
+    call begin_vtk_step(results%points, time, values, error)
     do i = 1, size(results%field)
       if (allocated(error)) return
       if (same_points .and. any(results%field(i) == constant_fields)) then
         call repeat_field(results%points, i, error)
         cycle
       end if
-      values = point_field(points, model%patches, trim(results%field(i)), kept)
       if (is_integer_field(trim(results%field(i)))) then
-        call write_integer_field(results%points, i, nint(values(1, :)), error)
+        call gather_indices(numbers, points, model%patches, trim(results%field(i)), kept)
+        call write_integer_field(results%points, i, numbers, error)
       else
+        call gather_field(values, points, trim(results%field(i)), kept)
         call write_field(results%points, i, values, error)
       end if
     end do

@@ -190,7 +190,11 @@ contains
       call append_rows(steps%cell, file, [vtk%cells%first_cell], error)
       call append_rows(steps%id, file, [vtk%cells%first_id], error)
     end associate
-    call append_rows(vtk%points, vtk%file, in_space(x), error)
+    if (size(x, 1) == 3) then
+      call append_rows(vtk%points, vtk%file, x, error)
+    else
+      call append_rows(vtk%points, vtk%file, in_space(x), error)
+    end if
   end subroutine begin_vtk_step
 
   !> Writes a field of reals.
@@ -214,7 +218,7 @@ contains
 
     vtk%field(i)%last_offset = row_count(vtk%field(i)%values, vtk%file)
     call repeat_field(vtk, i, error)
-    call append_rows(vtk%field(i)%values, vtk%file, int(values, ip), error)
+    call append_rows(vtk%field(i)%values, vtk%file, values, error)
   end subroutine write_integer_field
 
   !> Gives a field the values that were written last.
