@@ -2,7 +2,7 @@
 !! another file without unpacking them. A chunk holds all columns of its rows.
 ! allow(assumed-size)
 module mpm_hdf5_copy
-  use, intrinsic :: iso_c_binding, only: c_int, c_int32_t, c_int64_t, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_int, c_int32_t, c_int64_t, c_loc, c_ptr, c_size_t
   use hdf5, only: h5dget_create_plist_f, h5dget_space_f, h5dset_extent_f, h5pclose_f, &
                   h5pget_chunk_f, h5sclose_f, h5sget_simple_extent_dims_f, &
                   h5sget_simple_extent_ndims_f, hid_t, hsize_t
@@ -40,13 +40,13 @@ module mpm_hdf5_copy
     !> Writes a chunk as it is to be stored.
     function h5_write_chunk(dataset, transfer, filters, offset, n_bytes, bytes) &
       bind(c, name="H5Dwrite_chunk") result(status)
-      import :: c_int, c_int32_t, c_int64_t, c_size_t
+      import :: c_int, c_int32_t, c_int64_t, c_ptr, c_size_t
       implicit none
       integer(c_int64_t), value :: dataset, transfer
       integer(c_int32_t), value :: filters
       integer(c_int64_t), intent(in) :: offset(*)
       integer(c_size_t), value :: n_bytes
-      integer(c_int32_t), intent(in) :: bytes(*)
+      type(c_ptr), value :: bytes
       integer(c_int) :: status
     end function h5_write_chunk
   end interface
@@ -100,7 +100,7 @@ contains
     integer(hid_t), intent(in) :: to     !! open
     integer(ip), intent(in)    :: first  !! number of the row, from 0
     integer, intent(out)       :: status !! < 0: failed
-    integer(c_int32_t), allocatable :: bytes(:)
+    integer(c_int32_t), allocatable, target :: bytes(:)
     integer(c_int64_t) :: n_bytes, offset(2)
     integer(c_int32_t) :: filters
     character(80) :: reason
@@ -117,14 +117,14 @@ contains
     status = int(h5_read_chunk(from, default_transfer, offset, filters, bytes))
     if (status < 0) return
     status = int(h5_write_chunk(to, default_transfer, filters, offset, int(n_bytes, c_size_t), &
-                                bytes))
+                                c_loc(bytes)))
   end subroutine copy_chunk
 
   !> Stores a chunk that has been through all filters.
   subroutine put_chunk(dataset, first, bytes, n_bytes, status)
     integer(hid_t), intent(in) :: dataset       !! open, its extent covers the chunk
     integer(ip), intent(in)    :: first         !! number of its first row, from 0
-    integer(c_int32_t), intent(in) :: bytes(:)  !! as they are to be stored
+    type(c_ptr), intent(in)    :: bytes         !! as they are to be stored
     integer(ip), intent(in)    :: n_bytes       !! that count
     integer, intent(out)       :: status        !! < 0: failed
     integer(c_int32_t), parameter :: all_filters = 0_c_int32_t

@@ -3,12 +3,12 @@
 !! They are open as long as their file. Every procedure returns at once when `error` is set already.
 ! allow(assumed-size)
 module mpm_hdf5_series
-  use, intrinsic :: iso_c_binding, only: c_int32_t, c_loc, c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_float, c_int32_t, c_loc, c_null_ptr, c_ptr
   use hdf5, only: h5dcreate_f, h5dget_space_f, h5dset_extent_f, h5dwrite_f, &
                   h5kind_to_type, h5p_dataset_create_f, h5pclose_f, h5pcreate_f, h5pset_chunk_f, &
                   h5pset_deflate_f, h5pset_shuffle_f, h5s_select_set_f, h5s_unlimited_f, &
-                  h5sclose_f, h5screate_simple_f, h5sselect_hyperslab_f, h5t_ieee_f64le, &
-                  h5t_std_i32le, h5t_std_i64le, h5t_std_u8le, h5_integer_kind, h5_real_kind, &
+                  h5sclose_f, h5screate_simple_f, h5sselect_hyperslab_f, h5t_ieee_f32le, &
+                  h5t_ieee_f64le, h5t_std_i32le, h5t_std_i64le, h5t_std_u8le, h5_integer_kind, h5_real_kind, &
                   hid_t, hsize_t
   use mpm_chunk_packing, only: pack_chunk
   use mpm_error, only: error_t
@@ -19,12 +19,14 @@ module mpm_hdf5_series
   implicit none
   private
   public :: series_layout_t, series_t, append_rows, create_series, row_count
-  public :: kind_float64, kind_int32, kind_int64, kind_uint8
+  public :: kind_float32, kind_float64, kind_int32, kind_int64, kind_uint8
 
   integer, parameter :: kind_float64 = 1
   integer, parameter :: kind_int32 = 2
   integer, parameter :: kind_int64 = 3
   integer, parameter :: kind_uint8 = 4
+  integer, parameter :: kind_float32 = 5
+  logical, parameter :: is_little_endian = iachar(transfer(1_ip, "a")) == 1 !! as the files are
   integer, parameter :: deflate_level = 1 !! nearly twice as fast as 4, files hardly larger
 
   !> How the rows of a dataset are stored.
@@ -47,6 +49,7 @@ module mpm_hdf5_series
     type(c_ptr)    :: plain = c_null_ptr         !! the values, row by row
     integer(c_int32_t), allocatable :: packed(:) !! the chunk that they are, as it is stored
     integer(ip)    :: n_bytes = 0_ip             !! of it, 0: HDF5 packs, if anybody does
+    integer(ip)    :: n_plain = 0_ip             !! bytes of the values if they are the chunk
   end type rows_t
 
   !> Appends rows of reals or of integers.
@@ -158,9 +161,7 @@ contains
     if (allocated(error)) return
     rows%memory_type = h5kind_to_type(c_int32_t, h5_integer_kind)
     rows%plain = c_loc(values)
-    if (series%layout%kind == kind_int32 .and. fills_chunk(series, file, n_rows)) then
-      call pack_chunk(rows%packed, rows%n_bytes, rows%plain, n_rows, 4)
-    end if
+    if (series%layout%kind == kind_int32) call fill_chunk(rows, series, file, n_rows, 4)
     call write_rows(series, file, n_rows, rows, error)
   end subroutine write_indices
 
@@ -171,83 +172,124 @@ contains
     integer, intent(in) :: n_rows                      !! rows in values
     real(dp), intent(in), target :: values(*)          !! row by row
     type(error_t), allocatable, intent(inout) :: error !! exit_file
+    real(c_float), allocatable, target :: short(:)
     type(rows_t) :: rows
+    integer :: n_values
 
     call check_writable(file, error)
     if (allocated(error)) return
-    rows%memory_type = h5kind_to_type(dp, h5_real_kind)
-    rows%plain = c_loc(values)
-    if (fills_chunk(series, file, n_rows)) then
-      call pack_chunk(rows%packed, rows%n_bytes, rows%plain, &
-                      n_rows*max(1, series%layout%n_columns), 8)
+    if (series%layout%kind == kind_float32) then
+      n_values = n_rows*max(1, series%layout%n_columns)
+      allocate (short(n_values))
+      short(:) = shortened(values(:n_values))
+      rows%memory_type = h5kind_to_type(c_float, h5_real_kind)
+      rows%plain = c_loc(short)
+    else
+      rows%memory_type = h5kind_to_type(dp, h5_real_kind)
+      rows%plain = c_loc(values)
     end if
+    call fill_chunk(rows, series, file, n_rows, merge(4, 8, series%layout%kind == kind_float32))
     call write_rows(series, file, n_rows, rows, error)
   end subroutine write_reals
 
-  !> Writes rows behind the last one.
+  !> A value in single precision; what is beyond its range becomes the largest number.
+  elemental real(c_float) function shortened(value) result(short)
+    real(dp), intent(in) :: value
+    real(dp), parameter :: largest = real(huge(short), dp)
+
+    short = real(max(-largest, min(largest, value)), c_float)
+  end function shortened
+
+  !> Writes rows behind the last one. Those that fill a chunk are stored as they are, without a copy
+  !! in HDF5.
   subroutine write_rows(series, file, n_rows, rows, error)
     type(series_t), intent(in) :: series               !! grows
     type(hdf5_file_t), intent(inout) :: file           !! that holds it
     integer, intent(in) :: n_rows                      !! new rows
-    type(rows_t), intent(in) :: rows                   !! as they are, perhaps also packed
+    type(rows_t), intent(in), target :: rows           !! as they are, perhaps also packed
     type(error_t), allocatable, intent(inout) :: error !! exit_file
     integer(hid_t) :: id, memory, space
+    integer(ip) :: first
     integer :: status
 
-    call grow(series, file, n_rows, id, memory, space, status)
+    first = row_count(series, file)
+    call grow(series, file, n_rows, id, status)
     if (status >= 0) then
       if (rows%n_bytes > 0_ip) then
-        call put_chunk(id, row_count(series, file) - n_rows, rows%packed, rows%n_bytes, status)
+        call put_chunk(id, first, c_loc(rows%packed), rows%n_bytes, status)
+      else if (rows%n_plain > 0_ip) then
+        call put_chunk(id, first, rows%plain, rows%n_plain, status)
       else
-        call h5dwrite_f(id, rows%memory_type, rows%plain, status, memory, space)
+        call select_rows(series, id, first, n_rows, memory, space, status)
+        if (status >= 0) call h5dwrite_f(id, rows%memory_type, rows%plain, status, memory, space)
+        if (status >= 0) call h5sclose_f(memory, status)
+        if (status >= 0) call h5sclose_f(space, status)
       end if
     end if
-    if (status < 0) then
-      call fail_hdf5_file(file, "write", error)
-      return
-    end if
-    call h5sclose_f(memory, status)
-    call h5sclose_f(space, status)
+    if (status < 0) call fail_hdf5_file(file, "write", error)
   end subroutine write_rows
 
-  !> Whether rows fill a new chunk that is stored packed.
-  pure logical function fills_chunk(series, file, n_rows)
+  !> Prepares values of the type of the file that fill a new chunk: packed, or to be stored as they
+  !! are.
+  subroutine fill_chunk(rows, series, file, n_rows, bytes_of_value)
+    type(rows_t), intent(inout) :: rows   !! with plain values
     type(series_t), intent(in) :: series  !! dataset
     type(hdf5_file_t), intent(in) :: file !! that holds it
     integer, intent(in) :: n_rows         !! new rows
+    integer, intent(in) :: bytes_of_value !! 4 or 8
+    integer :: n_values
 
-    fills_chunk = series%layout%compressed .and. n_rows == series%layout%chunk_rows &
-                  .and. mod(row_count(series, file), int(max(1, n_rows), ip)) == 0_ip
-  end function fills_chunk
+    if (n_rows /= series%layout%chunk_rows) return
+    if (mod(row_count(series, file), int(max(1, n_rows), ip)) /= 0_ip) return
+    n_values = n_rows*max(1, series%layout%n_columns)
+    if (series%layout%compressed) then
+      call pack_chunk(rows%packed, rows%n_bytes, rows%plain, n_values, bytes_of_value)
+    else if (is_little_endian) then
+      rows%n_plain = int(n_values, ip)*int(bytes_of_value, ip)
+    end if
+  end subroutine fill_chunk
 
-  !> Makes room for rows and selects them.
-  subroutine grow(series, file, n_rows, id, memory, space, status)
+  !> Makes room for rows.
+  subroutine grow(series, file, n_rows, id, status)
     type(series_t), intent(in) :: series     !! has n_rows rows more
     type(hdf5_file_t), intent(inout) :: file !! that holds it
     integer, intent(in) :: n_rows            !! new rows
     integer(hid_t), intent(out) :: id        !! dataset
-    integer(hid_t), intent(out) :: memory    !! dataspace of the new rows
-    integer(hid_t), intent(out) :: space     !! dataspace of the file, the new rows selected
     integer, intent(out) :: status           !! < 0: failed
-    integer(hsize_t) :: first(2), new(2), total(2)
-    integer(ip) :: n_before
+    integer(hsize_t) :: total(2)
+    integer(ip) :: n_after
     integer :: rank
 
     rank = merge(1, 2, series%layout%n_columns == 0)
-    first = 0_hsize_t
-    n_before = row_count(series, file)
-    first(rank) = n_before
-    new = row_shape(series%layout, int(n_rows, hsize_t))
-    total = row_shape(series%layout, int(n_before + n_rows, hsize_t))
+    n_after = row_count(series, file) + n_rows
+    total = row_shape(series%layout, int(n_after, hsize_t))
     call open_dataset(file, series%number, id, status)
     if (status >= 0) call h5dset_extent_f(id, total(:rank), status)
-    if (status >= 0) call h5screate_simple_f(rank, new(:rank), memory, status)
+    if (status >= 0) call note_rows(file, series%number, n_after)
+  end subroutine grow
+
+  !> Selects rows of a dataset.
+  subroutine select_rows(series, id, first, n_rows, memory, space, status)
+    type(series_t), intent(in) :: series  !! dataset
+    integer(hid_t), intent(in) :: id      !! of the dataset
+    integer(ip), intent(in) :: first      !! number of the first row, from 0
+    integer, intent(in) :: n_rows         !! rows
+    integer(hid_t), intent(out) :: memory !! dataspace of the rows
+    integer(hid_t), intent(out) :: space  !! dataspace of the file, the rows selected
+    integer, intent(out) :: status        !! < 0: failed
+    integer(hsize_t) :: begin(2), extent(2)
+    integer :: rank
+
+    rank = merge(1, 2, series%layout%n_columns == 0)
+    begin = 0_hsize_t
+    begin(rank) = int(first, hsize_t)
+    extent = row_shape(series%layout, int(n_rows, hsize_t))
+    call h5screate_simple_f(rank, extent(:rank), memory, status)
     if (status >= 0) call h5dget_space_f(id, space, status)
     if (status >= 0) then
-      call h5sselect_hyperslab_f(space, h5s_select_set_f, first(:rank), new(:rank), status)
+      call h5sselect_hyperslab_f(space, h5s_select_set_f, begin(:rank), extent(:rank), status)
     end if
-    if (status >= 0) call note_rows(file, series%number, n_before + n_rows)
-  end subroutine grow
+  end subroutine select_rows
 
   !> Rows of a dataset.
   pure function row_count(series, file) result(n_rows)
@@ -281,6 +323,8 @@ contains
       type_id = h5t_std_i64le
     case (kind_uint8)
       type_id = h5t_std_u8le
+    case (kind_float32)
+      type_id = h5t_ieee_f32le
     case default
       type_id = h5t_ieee_f64le
     end select

@@ -219,9 +219,20 @@ contains
     integer, intent(in) :: items(:)                   !! indices of the points
     integer :: i
 
-    do i = 1, size(items)
-      values(:, i) = row(:, items(i))
-    end do
+    select case (size(values, 1)) ! lengths that the compiler knows
+    case (6)
+      do i = 1, size(items)
+        values(1:6, i) = row(1:6, items(i))
+      end do
+    case (3)
+      do i = 1, size(items)
+        values(1:3, i) = row(1:3, items(i))
+      end do
+    case default
+      do i = 1, size(items)
+        values(:, i) = row(:, items(i))
+      end do
+    end select
   end subroutine gather_rows
 
   !> Gives an array its shape. One that has it already keeps its memory.
