@@ -875,6 +875,23 @@ job.inp:17:9: error: empty parameter of *STATIC: expected DIRECT
 """),
     ),
     Case(
+        "precision_that_changes",
+        PLANE,
+        [
+            ("FREQUENCY=1", "PRECISION=SINGLE"),
+            (
+                "*END STEP\n",
+                "*END STEP\n*STEP\n*STATIC\n1, 1\n*OUTPUT, FIELD, PRECISION=DOUBLE\n*END STEP\n",
+            ),
+        ],
+        2,
+        text("""
+job.inp:33:27: error: a run has one precision: expected PRECISION=SINGLE as in step 'PUSH'
+   33 | *OUTPUT, FIELD, PRECISION=DOUBLE
+      |                           ^~~~~~
+"""),
+    ),
+    Case(
         "excluding_parameters",
         PLANE,
         [("FREQUENCY=1", "FREQUENCY=1, TIME INTERVAL=0.1")],

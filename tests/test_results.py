@@ -118,6 +118,22 @@ def test_fields_that_repeat_are_compressed(bar_run):
         assert file["VTKHDF/Points"].compression is None
 
 
+def test_single_precision_rounds_fields_of_points(run_tessera, bar_run):
+    deck = bar().replace("*OUTPUT, FIELD", "*OUTPUT, PRECISION=SINGLE, FIELD")
+    assert run_tessera(deck, "-q", "-o", "single").code == 0
+    paths = [bar_run.folder / "job.vtkhdf", bar_run.folder / "single" / "job.vtkhdf"]
+    with h5py.File(paths[0]) as double, h5py.File(paths[1]) as single:
+        for name in ("Points", *(f"PointData/{name}" for name in double["VTKHDF/PointData"])):
+            exact, rounded = (file[f"VTKHDF/{name}"] for file in (double, single))
+            if exact.dtype == np.float64:
+                assert rounded.dtype == np.float32
+            np.testing.assert_array_equal(rounded, exact[()].astype(rounded.dtype))
+        for name in ("VTKHDF/Steps/Values", "tessera/history/RF1[X1]", "tessera/ledger/volume"):
+            np.testing.assert_array_equal(single[name], double[name])
+    last = Series(paths[1]).at(1.0)
+    np.testing.assert_allclose(last["S"][:, 0], 1000 * np.log(1.1) / 1.1, rtol=1e-6)
+
+
 def test_mesh_moves_and_knows_its_points(bar_run):
     series = Series(bar_run.folder / "job_mesh.vtkhdf")
     points = Series(bar_run.folder / "job.vtkhdf").at(1.0)

@@ -199,6 +199,9 @@ contains
     call add_parameter(schema, value_rule_t("TIME INTERVAL", value_real, required=.false., &
                                             group=1, range="> 0", &
                                             meaning="at multiples of this step time"))
+    call add_parameter(schema, value_rule_t("PRECISION", value_choice, required=.false., &
+                                            choices="SINGLE|DOUBLE", default="DOUBLE", &
+                                            meaning="of the values; one in all steps"))
     call add_layout(schema, 0, many, layout_t(repeats=.true.))
     call add_field(schema, value_rule_t("field", value_choice, meaning="name of a field", &
       choices="S|TAU|LE|PEEQ|F|J|JBAR|U|VOL|MAT|PATCH|ELEMENT|ID"))

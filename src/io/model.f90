@@ -32,6 +32,7 @@ module mpm_model
     character(8), allocatable :: field(:)  !! deck names of point fields, upper case; empty = the default set
     integer  :: frequency = 1              !! every so many increments; 0 = only the end of the step
     real(dp) :: time_interval = 0.0_dp     !! > 0: at multiples of this step time instead (increments are cut to hit them)
+    logical  :: single = .false.           !! reals are stored in single precision
   end type field_output_t
 
   !> *HISTORY

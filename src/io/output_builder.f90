@@ -3,7 +3,7 @@ module mpm_output_builder
   use mpm_build_context, only: at_field, at_parameter, build_context_t, fault, require_node_set, &
     & require_surface
   use mpm_deck_card, only: deck_t, field_count, field_text, has_parameter, &
-    & parameter_integer, parameter_real, parameter_reals, parameter_text
+    & parameter_choice, parameter_integer, parameter_real, parameter_reals, parameter_text
   use mpm_diagnostics, only: quoted
   use mpm_kinds, only: dp
   use mpm_material_points, only: nearest_point
@@ -18,16 +18,29 @@ module mpm_output_builder
 
 contains
 
-  !> *OUTPUT, FIELD.
-  subroutine build_field_output(output, deck, context, i_card)
-    type(field_output_t), intent(out) :: output     !! fields and when
+  !> *OUTPUT, FIELD. The precision stays what it was in earlier steps.
+  subroutine build_field_output(output, model, deck, context, i_card)
+    type(field_output_t), intent(inout) :: output   !! fields, when and how
+    type(model_t), intent(in) :: model              !! with the steps before
     type(deck_t), intent(in) :: deck                !! the deck
     type(build_context_t), intent(inout) :: context !! takes errors
     integer, intent(in) :: i_card                   !! *OUTPUT
 
+    character(:), allocatable :: before
+    integer :: i
+
     call read_words(output%field, deck, context, i_card)
     output%frequency = parameter_integer(deck%card(i_card), "FREQUENCY", 1)
     output%time_interval = parameter_real(deck%card(i_card), "TIME INTERVAL", 0.0_dp)
+    before = trim(merge("SINGLE", "DOUBLE", output%single))
+    output%single = parameter_choice(deck%card(i_card), "PRECISION", before) == "SINGLE"
+    do i = 1, size(model%step) - 1
+      if (.not. model%step(i)%has_field_output) cycle
+      if (model%step(i)%field_output%single .eqv. output%single) cycle
+      call fault(context, deck, at_parameter(i_card, "PRECISION"), "a run has one precision: "// &
+                 "expected PRECISION="//before//" as in step "//quoted(model%step(i)%name))
+      return
+    end do
   end subroutine build_field_output
 
   !> The words of all data lines, each once.

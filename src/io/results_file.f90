@@ -3,7 +3,7 @@
 !! The group /tessera of JOB.vtkhdf holds everything else about the run, see mpm_run_tables.
 module mpm_results_file
   use mpm_error, only: error_t
-  use mpm_hdf5_series, only: kind_int32, series_layout_t
+  use mpm_hdf5_series, only: kind_float32, kind_float64, kind_int32, series_layout_t
   use mpm_kinds, only: dp
   use mpm_material_points, only: points_t, status_removed
   use mpm_mesh, only: mesh_t
@@ -17,7 +17,7 @@ module mpm_results_file
                         write_integer_field
   implicit none
   private
-  public :: results_file_t, close_results, field_names, is_field_output_due, open_results
+  public :: results_file_t, close_results, field_names, is_field_output_due, is_single, open_results
   public :: publish_results, write_increment_fields
 
   character(8), parameter :: default_fields(12) = [character(8) :: "S", "TAU", "LE", "PEEQ", "J", &
@@ -42,13 +42,14 @@ contains
     character(*), intent(in) :: mesh_path            !! JOB_mesh.vtkhdf
     type(model_t), intent(in) :: model               !! mesh, points, output requests
     type(error_t), allocatable, intent(out) :: error !! exit_file
-    integer :: i
+    integer :: i, kind
 
     results%field = field_names(model)
-    call create_vtkhdf(results%points, points_path, model%points%n, model%points%n, error)
+    kind = merge(kind_float32, kind_float64, is_single(model))
+    call create_vtkhdf(results%points, points_path, model%points%n, model%points%n, error, kind)
     do i = 1, size(results%field)
       call add_field(results%points, trim(results%field(i)), on_points, &
-                     point_layout(results%field(i), model%points%n), error)
+                     point_layout(results%field(i), model%points%n, kind), error)
     end do
     if (allocated(error)) return
     call create_vtkhdf(results%mesh, mesh_path, model%mesh%n_node, model%mesh%n_el, error)
@@ -198,6 +199,14 @@ contains
     call add_names(names, ["ID      "])
   end function field_names
 
+  !> Whether the fields of points are stored in single precision: all steps that ask for fields
+  !! agree.
+  pure logical function is_single(model)
+    type(model_t), intent(in) :: model
+
+    is_single = any(model%step%has_field_output .and. model%step%field_output%single)
+  end function is_single
+
   !> Adds the names that are not there yet.
   pure subroutine add_names(names, new)
     character(8), allocatable, intent(inout) :: names(:) !! perhaps longer
@@ -230,11 +239,13 @@ contains
 
   !> How the values of a point field are stored. Displacements, as coordinates, differ from point to
   !! point in all their digits: they would cost most time and gain an eighth.
-  pure function point_layout(name, n_points) result(layout)
+  pure function point_layout(name, n_points, kind) result(layout)
     character(*), intent(in) :: name    !! of the field
     integer, intent(in) :: n_points     !! points of a step
+    integer, intent(in) :: kind         !! of reals
     type(series_layout_t) :: layout
 
+    layout%kind = kind
     layout%chunk_rows = chunk_for(n_points)
     layout%compressed = name /= "U"
     layout%n_columns = n_field_components(trim(name))

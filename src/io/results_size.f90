@@ -3,7 +3,7 @@ module mpm_results_size
   use mpm_kinds, only: dp
   use mpm_model, only: model_t
   use mpm_point_fields, only: is_integer_field, n_field_components
-  use mpm_results_file, only: field_names
+  use mpm_results_file, only: field_names, is_single
   implicit none
   private
   public :: bytes_of_output, bytes_once
@@ -16,14 +16,15 @@ contains
   pure function bytes_of_output(model) result(n_bytes)
     type(model_t), intent(in) :: model
     real(dp) :: n_bytes !! [bytes]
-    integer  :: i, of_point
+    integer  :: i, of_point, of_real
     integer, parameter :: of_node = 4*3*8, of_element = 2*4 + 2*8
 
-    of_point = 3*8
+    of_real = merge(4, 8, is_single(model))
+    of_point = 3*of_real
     associate (name => field_names(model))
       do i = 1, size(name)
         of_point = of_point + n_field_components(trim(name(i))) &
-                   *merge(4, 8, is_integer_field(trim(name(i))))
+                   *merge(4, of_real, is_integer_field(trim(name(i))))
       end do
     end associate
     n_bytes = real(of_point, dp)*real(model%points%n, dp) &

@@ -271,7 +271,7 @@ contains
       select case (deck%card(i)%keyword)
       case ("OUTPUT")
         step%has_field_output = .true.
-        call build_field_output(step%field_output, deck, context, i)
+        call build_field_output(step%field_output, model, deck, context, i)
       case ("RESTART")
         step%restart_frequency = parameter_integer(deck%card(i), "FREQUENCY", 1)
       case ("HISTORY")

@@ -60,13 +60,17 @@ module mpm_vtkhdf
 contains
 
   !> Creates a file without steps.
-  subroutine create_vtkhdf(vtk, path, n_points, n_cells, error)
+  subroutine create_vtkhdf(vtk, path, n_points, n_cells, error, kind)
     type(vtkhdf_t), intent(out) :: vtk               !! open
     character(*), intent(in) :: path                 !! file
     integer, intent(in) :: n_points                  !! expected points of a step
     integer, intent(in) :: n_cells                   !! expected cells of a step
     type(error_t), allocatable, intent(out) :: error !! exit_file
+    integer, intent(in), optional :: kind            !! of coordinates: kind_float64 or kind_float32
+    integer :: of_coordinates
 
+    of_coordinates = kind_float64
+    if (present(kind)) of_coordinates = kind
     allocate (vtk%field(0))
     call create_hdf5_file(vtk%file, path, error)
     call make_group(vtk%file, "/VTKHDF", error)
@@ -75,7 +79,7 @@ contains
     call make_group(vtk%file, "/VTKHDF/PointData", error)
     call make_group(vtk%file, "/VTKHDF/CellData", error)
     call create_series(vtk%points, vtk%file, "/VTKHDF/Points", &
-                       series_layout_t(kind_float64, 3, chunk_for(n_points)), error)
+                       series_layout_t(of_coordinates, 3, chunk_for(n_points)), error)
     call create_cells(vtk%cells, vtk%file, n_cells, error)
     call create_steps(vtk%steps, vtk%file, error)
   end subroutine create_vtkhdf
