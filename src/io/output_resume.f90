@@ -9,7 +9,7 @@ module mpm_output_resume
   use mpm_run_log, only: resume_log
   use mpm_run_output, only: open_fields, prepare_output, run_output_t
   use mpm_run_state, only: run_info_t
-  use mpm_run_tables, only: add_waiting
+  use mpm_run_tables, only: add_waiting_tables
   use mpm_status_file, only: resume_status
   use mpm_text_file, only: check_text_file, resume_text_file
   use mpm_vtkhdf, only: mark_vtkhdf, resume_vtkhdf
@@ -28,7 +28,7 @@ contains
     mark%status = output%status%file%mark
     mark%history = output%history%mark
     call mark_vtkhdf(output%results%points, mark%points)
-    call add_waiting(output%tables, mark%points%n_rows)
+    call add_waiting_tables(output%tables, mark%points%n_rows)
     call mark_vtkhdf(output%results%mesh, mark%mesh)
     mark%n_written = int(output%results%n_written, ip)
     mark%n_shown = int(output%n_shown, ip)

@@ -6,7 +6,7 @@ module mpm_row_buffer
   use mpm_kinds, only: dp, ip
   implicit none
   private
-  public :: row_buffer_t, create_buffer, hold_rows, write_buffer
+  public :: row_buffer_t, add_waiting, create_buffer, hold_rows, write_buffer
 
   integer, parameter :: first_capacity = 64 !! rows
 
@@ -98,5 +98,15 @@ contains
     end if
     buffer%n_waiting = 0
   end subroutine write_buffer
+
+  !> Adds the rows that wait to those that a file has.
+  pure subroutine add_waiting(buffer, n_rows)
+    type(row_buffer_t), intent(in) :: buffer
+    integer(ip), intent(inout) :: n_rows(:) !! (datasets of the file)
+
+    associate (n => n_rows(buffer%series%number))
+      n = n + int(buffer%n_waiting, ip)
+    end associate
+  end subroutine add_waiting
 
 end module mpm_row_buffer

@@ -11,13 +11,13 @@ module mpm_run_tables
   use mpm_kinds, only: dp, ip
   use mpm_ledger, only: ledger_t
   use mpm_newton_report, only: newton_report_t
-  use mpm_row_buffer, only: create_buffer, hold_rows, row_buffer_t, write_buffer
+  use mpm_row_buffer, only: add_waiting, create_buffer, hold_rows, row_buffer_t, write_buffer
   use mpm_run_state, only: run_info_t, run_state_t
   implicit none
   private
   public :: run_tables_t, open_tables
   public :: append_history, append_iterations, append_ledger
-  public :: add_waiting, n_waiting, write_tables
+  public :: add_waiting_tables, n_waiting, write_tables
 
   character(13), parameter :: iteration_columns(12) = [character(13) :: "step", "increment", &
     "attempt", "iteration", "residual", "kinematics", "stress", "assembly", "factorisation", &
@@ -250,14 +250,14 @@ contains
   end function n_waiting
 
   !> Adds the rows that wait to those that a file has.
-  pure subroutine add_waiting(tables, n_rows)
+  pure subroutine add_waiting_tables(tables, n_rows)
     type(run_tables_t), intent(in) :: tables
     integer(ip), intent(inout) :: n_rows(:) !! (datasets of JOB.vtkhdf)
 
     call add_columns(tables%history, n_rows)
     call add_columns(tables%iterations, n_rows)
     call add_columns(tables%ledger, n_rows)
-  end subroutine add_waiting
+  end subroutine add_waiting_tables
 
   !> Adds the rows of a table that wait.
   pure subroutine add_columns(column, n_rows)
@@ -266,9 +266,7 @@ contains
     integer :: i
 
     do i = 1, size(column)
-      associate (n => n_rows(column(i)%series%number))
-        n = n + int(column(i)%n_waiting, ip)
-      end associate
+      call add_waiting(column(i), n_rows)
     end do
   end subroutine add_columns
 

@@ -1,5 +1,6 @@
 !> Files of Kitware's VTKHDF format: an unstructured grid that changes in time.
 !!
+!! What describes a step waits in memory until the next flush; its values are written at once.
 !! A grid of the same cells as at the step before refers to the cells written then; a field that
 !! has not changed refers to the values written before. Every procedure but create_vtkhdf returns
 !! at once when `error` is set already.
@@ -12,6 +13,7 @@ module mpm_vtkhdf
   use mpm_hdf5_resume, only: refuse_resume, resume_rows
   use mpm_kinds, only: dp, ip
   use mpm_output_mark, only: file_mark_t
+  use mpm_row_buffer, only: add_waiting, create_buffer, hold_rows, row_buffer_t, write_buffer
   implicit none
   private
   public :: vtkhdf_t, close_vtkhdf, create_vtkhdf, flush_vtkhdf, mark_vtkhdf, resume_vtkhdf
@@ -23,6 +25,9 @@ module mpm_vtkhdf
   integer, parameter :: vtk_tetra = 10    !! cell of four nodes
   integer, parameter :: on_points = 1     !! a field with one value per point
   integer, parameter :: on_cells = 2      !! a field with one value per cell
+  ! Datasets with a row per step.
+  integer, parameter :: step_time = 1, step_part = 2, step_n_parts = 3, step_point = 4
+  integer, parameter :: step_cell = 5, step_id = 6
   integer, parameter :: rows_at_once = 8388608 !! largest chunk: a field of a step in one piece
   character(*), parameter :: folder_of(2) = ["PointData", "CellData "]
 
@@ -30,7 +35,7 @@ module mpm_vtkhdf
   type :: field_t
     character(:), allocatable :: name
     type(series_t) :: values           !! all values, one step after the other
-    type(series_t) :: offsets          !! first row of each step
+    type(row_buffer_t) :: offsets      !! first row of each step
     integer(ip) :: last_offset = 0_ip  !! first row of the values written last
   end type field_t
 
@@ -42,17 +47,12 @@ module mpm_vtkhdf
     integer(ip) :: first_id = 0_ip   !! of the connectivity written last
   end type cells_t
 
-  !> The datasets with a row per step.
-  type :: steps_t
-    type(series_t) :: time, part, n_parts, point, cell, id
-  end type steps_t
-
   !> An open file.
   type :: vtkhdf_t
     type(hdf5_file_t) :: file
     integer :: n_steps = 0
     type(cells_t)  :: cells
-    type(steps_t)  :: steps
+    type(row_buffer_t) :: step(6)      !! step_*, a row per step each
     type(series_t) :: points
     type(field_t), allocatable :: field(:)
   end type vtkhdf_t
@@ -81,7 +81,7 @@ contains
     call create_series(vtk%points, vtk%file, "/VTKHDF/Points", &
                        series_layout_t(of_coordinates, 3, chunk_for(n_points)), error)
     call create_cells(vtk%cells, vtk%file, n_cells, error)
-    call create_steps(vtk%steps, vtk%file, error)
+    call create_steps(vtk%step, vtk%file, error)
   end subroutine create_vtkhdf
 
   !> Creates the datasets of the grid.
@@ -103,23 +103,24 @@ contains
   end subroutine create_cells
 
   !> Creates the datasets of the steps.
-  subroutine create_steps(steps, file, error)
-    type(steps_t), intent(out) :: steps                !! open
+  subroutine create_steps(step, file, error)
+    type(row_buffer_t), intent(out) :: step(:)         !! (6) open
     type(hdf5_file_t), intent(inout) :: file           !! open
     type(error_t), allocatable, intent(inout) :: error !! exit_file
+    type(series_layout_t) :: counter, row
 
     call make_group(file, "/VTKHDF/Steps", error)
     call write_integers_attribute(file, "/VTKHDF/Steps", "NSteps", [0_ip], error)
     call make_group(file, "/VTKHDF/Steps/PointDataOffsets", error)
     call make_group(file, "/VTKHDF/Steps/CellDataOffsets", error)
-    call create_series(steps%time, file, "/VTKHDF/Steps/Values", series_layout_t(), error)
-    call create_counter(steps%part, file, "/VTKHDF/Steps/PartOffsets", error)
-    call create_counter(steps%n_parts, file, "/VTKHDF/Steps/NumberOfParts", error)
-    call create_counter(steps%point, file, "/VTKHDF/Steps/PointOffsets", error)
-    call create_series(steps%cell, file, "/VTKHDF/Steps/CellOffsets", &
-                       series_layout_t(kind_int64, 1), error)
-    call create_series(steps%id, file, "/VTKHDF/Steps/ConnectivityIdOffsets", &
-                       series_layout_t(kind_int64, 1), error)
+    counter = series_layout_t(kind_int64)
+    row = series_layout_t(kind_int64, 1)
+    call create_buffer(step(step_time), file, "/VTKHDF/Steps/Values", series_layout_t(), error)
+    call create_buffer(step(step_part), file, "/VTKHDF/Steps/PartOffsets", counter, error)
+    call create_buffer(step(step_n_parts), file, "/VTKHDF/Steps/NumberOfParts", counter, error)
+    call create_buffer(step(step_point), file, "/VTKHDF/Steps/PointOffsets", counter, error)
+    call create_buffer(step(step_cell), file, "/VTKHDF/Steps/CellOffsets", row, error)
+    call create_buffer(step(step_id), file, "/VTKHDF/Steps/ConnectivityIdOffsets", row, error)
   end subroutine create_steps
 
   !> Creates a dataset of counts or offsets.
@@ -149,8 +150,9 @@ contains
     longer(n + 1)%name = name
     call create_series(longer(n + 1)%values, vtk%file, &
                        "/VTKHDF/"//trim(folder_of(place))//"/"//name, layout, error)
-    call create_counter(longer(n + 1)%offsets, vtk%file, &
-                        "/VTKHDF/Steps/"//trim(folder_of(place))//"Offsets/"//name, error)
+    call create_buffer(longer(n + 1)%offsets, vtk%file, &
+                       "/VTKHDF/Steps/"//trim(folder_of(place))//"Offsets/"//name, &
+                       series_layout_t(kind_int64), error)
     call move_alloc(longer, vtk%field)
   end subroutine add_field
 
@@ -185,14 +187,15 @@ contains
     real(dp), intent(in) :: x(:, :)                    !! (2 or 3, n) coordinates [length]
     type(error_t), allocatable, intent(inout) :: error !! exit_file
 
+    if (allocated(error)) return
     vtk%n_steps = vtk%n_steps + 1
-    associate (steps => vtk%steps, file => vtk%file)
-      call append_rows(steps%time, file, [time], error)
-      call append_rows(steps%part, file, [row_count(vtk%cells%n_points, file) - 1_ip], error)
-      call append_rows(steps%n_parts, file, [1_ip], error)
-      call append_rows(steps%point, file, [row_count(vtk%points, file)], error)
-      call append_rows(steps%cell, file, [vtk%cells%first_cell], error)
-      call append_rows(steps%id, file, [vtk%cells%first_id], error)
+    associate (step => vtk%step, file => vtk%file)
+      call hold_rows(step(step_time), [time])
+      call hold_rows(step(step_part), [row_count(vtk%cells%n_points, file) - 1_ip])
+      call hold_rows(step(step_n_parts), [1_ip])
+      call hold_rows(step(step_point), [row_count(vtk%points, file)])
+      call hold_rows(step(step_cell), [vtk%cells%first_cell])
+      call hold_rows(step(step_id), [vtk%cells%first_id])
     end associate
     if (size(x, 1) == 3) then
       call append_rows(vtk%points, vtk%file, x, error)
@@ -231,7 +234,7 @@ contains
     integer, intent(in) :: i                           !! number of the field
     type(error_t), allocatable, intent(inout) :: error !! exit_file
 
-    call append_rows(vtk%field(i)%offsets, vtk%file, [vtk%field(i)%last_offset], error)
+    if (.not. allocated(error)) call hold_rows(vtk%field(i)%offsets, [vtk%field(i)%last_offset])
   end subroutine repeat_field
 
   !> Makes the steps written so far visible to a reader.
@@ -243,26 +246,40 @@ contains
     call publish_hdf5_file(vtk%file, error)
   end subroutine flush_vtkhdf
 
-  !> Tells a reader how many steps there are, if any are new.
+  !> Writes what describes the steps, and how many there are, if any are new.
   subroutine count_steps(vtk, error)
     type(vtkhdf_t), intent(inout) :: vtk               !! after the last field of a step
     type(error_t), allocatable, intent(inout) :: error !! exit_file
+    integer :: i
 
     if (.not. vtk%file%has_news) return
+    do i = 1, size(vtk%step)
+      call write_buffer(vtk%step(i), vtk%file, error)
+    end do
+    do i = 1, size(vtk%field)
+      call write_buffer(vtk%field(i)%offsets, vtk%file, error)
+    end do
     call write_integers_attribute(vtk%file, "/VTKHDF/Steps", "NSteps", [int(vtk%n_steps, ip)], &
                                   error)
   end subroutine count_steps
 
-  !> Where a file stands after a flush.
+  !> Where a file stands after a step.
   pure subroutine mark_vtkhdf(vtk, mark)
     type(vtkhdf_t), intent(in) :: vtk       !! open
     type(file_mark_t), intent(out) :: mark
+    integer :: i
 
     mark%n_steps = int(vtk%n_steps, ip)
     mark%first_cell = vtk%cells%first_cell
     mark%first_id = vtk%cells%first_id
     mark%last_offset = vtk%field%last_offset
     mark%n_rows = vtk%file%dataset%n_rows
+    do i = 1, size(vtk%step)
+      call add_waiting(vtk%step(i), mark%n_rows)
+    end do
+    do i = 1, size(vtk%field)
+      call add_waiting(vtk%field(i)%offsets, mark%n_rows)
+    end do
   end subroutine mark_vtkhdf
 
   !> Takes the steps up to a mark from the file with the same path, which the run to go on with
