@@ -125,11 +125,16 @@ contains
     type(hdf5_file_t), intent(inout) :: file           !! that holds it
     integer(ip), intent(in) :: values(:)               !! (n_rows)
     type(error_t), allocatable, intent(inout) :: error !! exit_file
+    integer(ip), parameter :: largest = int(huge(0_c_int32_t), ip), least = -largest - 1_ip
     integer(ip), allocatable, target :: buffer(:)
     type(rows_t) :: rows
 
     call check_writable(file, error)
     if (allocated(error)) return
+    if (series%layout%kind == kind_int32) then ! HDF5 would clear a megabyte to convert a number
+      call append_indices(series, file, int(max(least, min(largest, values)), c_int32_t), error)
+      return
+    end if
     allocate (buffer(size(values)))
     buffer(:) = values
     rows%memory_type = h5kind_to_type(ip, h5_integer_kind)
