@@ -9,7 +9,7 @@ module mpm_tangent_solution
   private
   public :: forcing_t, choose_accuracy, factorize_again, solve_tangent
 
-  real(dp), parameter :: blind = 1.0e-8_dp   !! relative residual of a first solution from rest
+  real(dp), parameter :: blind = 1.0e-6_dp   !! relative residual of a first solution from rest
   real(dp), parameter :: first = 0.01_dp     !! of a first solution from the last increment
   real(dp), parameter :: largest = 0.1_dp    !! of any solution
   real(dp), parameter :: digits = 10.0_dp    !! of solutions that are to be exact
