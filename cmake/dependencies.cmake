@@ -5,7 +5,7 @@ find_package(UMFPACK 5.7 REQUIRED)
 find_package(METIS 5.1 REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(ISAL) # fields are packed six times as fast with it
-find_package(MUMPS 5.1) # factors that are kept, and LINEAR SOLVER=MUMPS of a deck
+find_package(MUMPS 5.5) # factors that are kept, and LINEAR SOLVER=MUMPS of a deck
 
 # Without the component HL, which nothing here uses: on a Debian without the development files of curl
 # and OpenSSL CMake takes it for found, but names a library that does not exist.

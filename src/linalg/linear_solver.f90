@@ -8,6 +8,7 @@ module mpm_linear_solver
   use mpm_memory, only: has_room
   use mpm_mumps_binding, only: mumps_analyse, mumps_bytes, mumps_close, mumps_entries, &
     mumps_factorize, mumps_flops, mumps_found, mumps_is_there, mumps_ok, mumps_singular, mumps_solve
+  use mpm_node_ordering, only: order_by_nodes
   use mpm_openblas_binding, only: dtrsm, openblas_set_num_threads
   use mpm_umfpack_binding, only: control_initial, control_ordering, control_refinements, &
     control_strategy, info_entries, info_flops, info_peak, info_peak_estimate, info_rcond, &
@@ -111,10 +112,18 @@ contains
     integer, intent(out) :: outcome                !! solver_*
     real(c_double) :: found(0:mumps_found - 1)
     integer(c_int) :: code
+    integer(c_int), allocatable :: place(:)
+    logical :: is_ordered
 
+    allocate (place(matrix%n))
+    call order_by_nodes(place, matrix, is_ordered)
+    if (.not. is_ordered) then
+      outcome = solver_memory ! METIS does not say why
+      return
+    end if
     solver%mumps = mumps_analyse(merge(1_c_int, 0_c_int, solver%library == library_single), &
                                  int(matrix%n, c_int), int(matrix%nnz, c_long), matrix%col_ptr, &
-                                 matrix%row, code, found)
+                                 matrix%row, place, code, found)
     solver%memory = found(mumps_bytes)
     solver%entries = found(mumps_entries)
     solver%flops = found(mumps_flops)

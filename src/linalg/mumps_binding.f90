@@ -25,8 +25,8 @@ module mpm_mumps_binding
       integer(c_int) :: answer
     end function mumps_is_there
 
-    !> Orders and analyses a pattern; null if that fails.
-    function mumps_analyse(single, n, nnz, col_ptr, row, status, found) &
+    !> Analyses a pattern in an order of elimination; null if that fails.
+    function mumps_analyse(single, n, nnz, col_ptr, row, place, status, found) &
       bind(c, name="tessera_mumps_analyse") result(handle)
       import :: c_double, c_int, c_long, c_ptr
       implicit none
@@ -35,6 +35,7 @@ module mpm_mumps_binding
       integer(c_long), value :: nnz               !! entries
       integer(c_long), intent(in) :: col_ptr(0:*) !! (0:n)
       integer(c_long), intent(in) :: row(0:*)     !! (0:nnz-1)
+      integer(c_int), intent(in) :: place(*)      !! (n)  of each column, from 1
       integer(c_int), intent(out) :: status       !! mumps_ok, mumps_singular or 2: no memory
       real(c_double), intent(out) :: found(0:*)   !! (0:mumps_found-1)  estimates
       type(c_ptr) :: handle

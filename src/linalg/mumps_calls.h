@@ -29,8 +29,8 @@ static void NAME(close)(STRUC *id)
     free(id);
 }
 
-static STRUC *NAME(analyse)(int n, long nnz, const long *col_ptr, const long *row, int *status,
-                            double *found)
+static STRUC *NAME(analyse)(int n, long nnz, const long *col_ptr, const long *row,
+                            const int *place, int *status, double *found)
 {
     STRUC *id = calloc(1, sizeof *id);
     *status = NO_MEMORY;
@@ -40,10 +40,15 @@ static STRUC *NAME(analyse)(int n, long nnz, const long *col_ptr, const long *ro
     id->par = 1;
     id->comm_fortran = USE_COMM_WORLD;
     NAME(call)(id, INITIALISE);
+    if (id->INFOG(1) < 0) {
+        free(id);
+        return NULL;
+    }
     for (int stream = 1; stream <= 4; stream++)
         id->ICNTL(stream) = 0;  /* no output */
     id->ICNTL(6) = 0;           /* the diagonal stays where it is */
-    id->ICNTL(7) = METIS;
+    id->ICNTL(7) = GIVEN;
+    id->perm_in = (MUMPS_INT *)place; /* read only */
     id->ICNTL(10) = 0;          /* no refinement */
     id->ICNTL(24) = 1;          /* zero pivots are counted */
     id->n = n;
@@ -59,6 +64,7 @@ static STRUC *NAME(analyse)(int n, long nnz, const long *col_ptr, const long *ro
         NAME(call)(id, ANALYSE);
         *status = NAME(status)(id);
     }
+    id->perm_in = NULL;
     found[BYTES] = 1.0e6 * (id->INFOG(16) > 0 ? id->INFOG(16) : 1); /* whole megabytes */
     found[ENTRIES] = count_of(id->INFOG(20));
     found[FLOPS] = id->RINFOG(1);
@@ -92,8 +98,8 @@ static int NAME(factorize)(STRUC *id, const double *val, double scale, double *r
     status = NAME(status)(id);
     if (status == OK && id->INFOG(28) > 0)
         status = SINGULAR;
-    if (status == OK && id->RINFOG(20) > 0)
-        *rcond = id->RINFOG(19) / id->RINFOG(20);
+    if (status == OK && id->RINFOG(LARGEST_PIVOT) > 0)
+        *rcond = id->RINFOG(SMALLEST_PIVOT) / id->RINFOG(LARGEST_PIVOT);
     found[BYTES] = 1.0e6 * id->INFOG(21); /* whole megabytes */
     found[ENTRIES] = count_of(id->INFOG(29));
     found[FLOPS] = id->RINFOG(3);

@@ -17,7 +17,8 @@ enum { BYTES = 0, ENTRIES = 1, FLOPS = 2, N_FOUND = 3 }; /* what a call tells */
 #define RINFOG(i) rinfog[(i) - 1]
 
 enum { INITIALISE = -1, END = -2, ANALYSE = 1, FACTORIZE = 2, SOLVE = 3 };
-enum { METIS = 5, MOST_ROOM = 1000, USE_COMM_WORLD = -987654 };
+enum { GIVEN = 1, MOST_ROOM = 1000, USE_COMM_WORLD = -987654 };
+enum { SMALLEST_PIVOT = 19, LARGEST_PIVOT = 21 };
 
 /* MUMPS tells large counts as negative millions. */
 static double count_of(int told)
@@ -74,9 +75,10 @@ void tessera_mumps_close(void *handle)
     free(solver);
 }
 
-/* Analyses a pattern of compressed columns, indices from 0; NULL when that fails. */
+/* Analyses a pattern of compressed columns, indices from 0, with the place of each column in the
+   order of elimination, from 1; NULL when that fails. */
 void *tessera_mumps_analyse(int single, int n, long nnz, const long *col_ptr, const long *row,
-                            int *status, double *found)
+                            const int *place, int *status, double *found)
 {
     solver_t *solver = calloc(1, sizeof *solver);
     memset(found, 0, N_FOUND * sizeof *found);
@@ -84,9 +86,9 @@ void *tessera_mumps_analyse(int single, int n, long nnz, const long *col_ptr, co
     if (solver == NULL)
         return NULL;
     if (single)
-        solver->in_single = single_analyse(n, nnz, col_ptr, row, status, found);
+        solver->in_single = single_analyse(n, nnz, col_ptr, row, place, status, found);
     else
-        solver->in_double = double_analyse(n, nnz, col_ptr, row, status, found);
+        solver->in_double = double_analyse(n, nnz, col_ptr, row, place, status, found);
     if (*status == OK)
         return solver;
     free(solver);
@@ -127,9 +129,9 @@ void tessera_mumps_close(void *handle)
 }
 
 void *tessera_mumps_analyse(int single, int n, long nnz, const long *col_ptr, const long *row,
-                            int *status, double *found)
+                            const int *place, int *status, double *found)
 {
-    (void)single, (void)n, (void)nnz, (void)col_ptr, (void)row;
+    (void)single, (void)n, (void)nnz, (void)col_ptr, (void)row, (void)place;
     memset(found, 0, N_FOUND * sizeof *found);
     *status = NO_MEMORY;
     return NULL;

@@ -12,7 +12,8 @@ module mpm_recycled_solver
   use mpm_gmres, only: gmres_converged, gmres_t, open_gmres, solve_by_gmres
   use mpm_kinds, only: dp, ip
   use mpm_linear_solver, only: analyse, choose_library, factorize, has_factors, is_analysed, &
-    is_exact, library_umfpack, linear_solver_t, solve, solver_ok, work_of_factors, work_of_solution
+    is_exact, library_umfpack, linear_solver_t, solve, solver_memory, solver_ok, work_of_factors, &
+    work_of_solution
   implicit none
   private
   public :: accuracy_t, factor_memory_t, recycler_t
@@ -22,7 +23,7 @@ module mpm_recycled_solver
   integer, parameter  :: n_largest = 40            !! directions of GMRES between two restarts
   real(dp), parameter :: growth = 1.5_dp           !! of the work per digit until an increment ends
   real(dp), parameter :: fewest_digits = 1.0e-3_dp !! that count as asked for
-  real(dp), parameter :: least_ratio = 1.0e-5_dp   !! of pivots of single precision: below it they
+  real(dp), parameter :: least_ratio = 5.0e-5_dp   !! of pivots of single precision: below it they
                                                    !! do not tell whether the matrix is singular
 
   !> What is wanted of a solution.
@@ -43,7 +44,7 @@ module mpm_recycled_solver
     character(8) :: pattern = ""     !! checksum of the pattern
     real(dp) :: work = 0.0_dp        !! of the factorisation and the solutions [entries read]
     real(dp) :: digits = 0.0_dp      !! gained by all solutions
-    real(dp) :: rate = 0.0_dp        !! work per digit of the last solution, 0 with new factors
+    real(dp) :: rate = 0.0_dp        !! work per digit of the last solution, 0 after a direct one
     real(dp), allocatable :: val(:)  !! (nnz)  the matrix that was factorised
   end type factor_memory_t
 
@@ -198,23 +199,23 @@ contains
 
     recycler%is_new = .true.
     call make_factors(recycler, solver, matrix, outcome)
-    if (is_exact(solver)) return
+    if (is_exact(solver) .or. outcome == solver_memory) return
     if (outcome /= solver_ok .or. solver%rcond < least_ratio) then
       call leave_single(recycler, solver, matrix, outcome)
     end if
   end subroutine renew_factors
 
-  !> Single precision does not serve: factors by UMFPACK, now and later.
+  !> Single precision does not serve: factors by UMFPACK, now and, if it can make them, later.
   subroutine leave_single(recycler, solver, matrix, outcome)
     type(recycler_t), intent(inout) :: recycler
     type(linear_solver_t), intent(inout) :: solver !! of single precision; exact afterwards
     type(csc_matrix_t), intent(in) :: matrix
     integer, intent(out) :: outcome                !! solver_*
 
-    recycler%now%needs_double = .true.
     call choose_library(solver, library_umfpack)
     call analyse(solver, matrix, outcome)
     if (outcome == solver_ok) call make_factors(recycler, solver, matrix, outcome)
+    recycler%now%needs_double = outcome == solver_ok
   end subroutine leave_single
 
   !> Factors in place of those in use.
