@@ -61,8 +61,9 @@ contains
     class(iteration_watch_t), intent(inout), optional :: watch !! told of iterations
     type(newton_state_t) :: newton
     integer :: n_before
-    logical :: predicts
+    logical :: needed_double, predicts
 
+    needed_double = system%recycler%now%needs_double
     call open_report(report, settings%max_iterations)
     allocate (newton%residual(system%dofs%n), newton%x(system%dofs%n))
     predicts = settings%prediction .and. system%guess_ratio > 0.0_dp
@@ -89,6 +90,7 @@ contains
     if (report%outcome == outcome_converged .and. settings%eigenvalues) then
       call find_eigenvalues(report%eigenvalues, system%solver, system%tangent)
     end if
+    report%left_single = system%recycler%now%needs_double .and. .not. needed_double
     report%worst_node = node_of_largest(system)
     call close_report(report)
   end subroutine find_equilibrium
@@ -224,7 +226,6 @@ contains
     real(dp), allocatable :: force(:, :), load(:), rhs(:)
     real(dp) :: clock(2)
     integer :: outcome
-    logical :: needed_double
 
     report%n_iterations = iteration
     if (.not. system%sums%has_moduli) &
@@ -247,7 +248,6 @@ contains
     call choose_accuracy(newton%forcing, norm2(rhs), merge(newton%norm, 0.0_dp, &
                          iteration > 1 .or. newton%moved), report%residual(iteration - 1), &
                          report%n_plastic > 0, settings%tolerance)
-    needed_double = system%recycler%now%needs_double
     call solve_tangent(newton%x, system, rhs, newton%forcing%accuracy, &
                        chosen_method(settings%linear_solver, system%dofs%n, &
                                      settings%least_recycled), outcome)
@@ -257,7 +257,6 @@ contains
                                      + [clock(2) - clock(1), system%recycler%seconds]
     report%gmres(iteration) = system%recycler%n_iterations
     report%is_new(iteration) = system%recycler%is_new
-    if (system%recycler%now%needs_double .and. .not. needed_double) report%left_single = iteration
     select case (outcome)
     case (solver_ok)
       allocate (load, mold=newton%x)

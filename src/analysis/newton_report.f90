@@ -24,25 +24,26 @@ module mpm_newton_report
   type :: newton_report_t
     integer :: outcome = outcome_converged
     integer :: n_iterations = 0
-    real(dp), allocatable :: residual(:)   !! (0:n_iterations)  relative residual [-], index 0 before the first correction
+    real(dp), allocatable :: residual(:)   !! (0:n_iterations)  relative residual [-], index 0 before the
+                                           !! first correction
     integer, allocatable  :: backtracks(:) !! (n_iterations)
-    real(dp), allocatable :: seconds(:, :) !! (5, n_iterations)  CPU: kinematics, stress, assembly, factorisation, solve [s]
+    real(dp), allocatable :: seconds(:, :) !! (5, n_iterations)  CPU: kinematics, stress, assembly,
+                                           !! factorisation, solve [s]
     integer, allocatable  :: gmres(:)      !! (n_iterations)  iterations of GMRES, 0 = none
     logical, allocatable  :: is_new(:)     !! (n_iterations)  the factors are of this tangent
-    integer :: left_single = 0             !! iteration from which single precision does not serve
-                                           !! any more, 0 if there is none
+    logical :: left_single = .false.       !! factors of single precision no longer serve
     integer :: worst_node = 0              !! node of the largest residual
-    integer :: worst_element = 0           !! inverted element or element of a failed point, 0 if none
+    integer :: worst_element = 0           !! inverted, or with a failed point, 0 if none
     integer :: worst_point = 0             !! id of a failed point, 0 if none
     integer :: n_plastic = 0               !! points that flowed in the last evaluation
     integer, allocatable :: flowing(:)     !! (0:n_iterations)  points that flow
-    real(dp) :: rcond = 1.0_dp             !! smallest over largest pivot, least one of all factors [-]
+    real(dp) :: rcond = 1.0_dp             !! smallest over largest pivot, least of all factors [-]
     real(dp) :: at_rest = 0.0_dp           !! relative residual without any displacement [-]
     logical  :: at_limit_load = .false.    !! load control has met a limit load, see mpm_limit_load
     logical  :: predicted = .false.        !! began with the motion of the last increment
     integer  :: n_given_up = 0             !! corrections after a prediction that led nowhere
     integer  :: n_inexact = 0              !! corrections of limited accuracy that led nowhere
-    real(dp) :: stretch = 0.0_dp           !! largest one of an active element, once in equilibrium [-]
+    real(dp) :: stretch = 0.0_dp           !! largest one of an active element, in equilibrium [-]
     real(dp) :: reach = 0.0_dp             !! largest way of the load in one correction [length]
     type(eigenvalues_t) :: eigenvalues     !! of the last tangent, if they were asked for
   end type newton_report_t

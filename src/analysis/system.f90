@@ -53,6 +53,7 @@ module mpm_system
     type(csc_matrix_t)    :: tangent
     type(linear_solver_t) :: solver
     type(recycler_t)      :: recycler       !! its factors over corrections and increments
+    integer :: n_judged = 0                 !! analyses of the solver whose memory was judged
     integer :: worst_element = 0            !! inverted element or element of the failed point
     integer :: worst_point = 0              !! failed point
     real(dp) :: seconds(2) = 0.0_dp         !! CPU of all evaluations: kinematics, stress with internal force [s]

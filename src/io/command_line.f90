@@ -48,7 +48,7 @@ module mpm_command_line
     option_t(" ", "check-tangent", "", "compare the tangent with finite differences, then stop"), &
     option_t(" ", "estimate", "", "tell memory, time and size of the results, do not solve"), &
     option_t(" ", "max-memory", "GB", "refuse a run that needs more memory"), &
-    option_t(" ", "publish", "SECONDS", "least time between publications of results (default: 1)"), &
+    option_t(" ", "publish", "SECONDS", "least time between publications (default: 1)"), &
     option_t(" ", "compare", "LIST", "run the formulations of a list, as standard,fbar"), &
     option_t(" ", "restart", "FILE", "go on from a restart file"), &
     option_t(" ", "lax", "", "only warn of a set, material or amplitude that is not used"), &

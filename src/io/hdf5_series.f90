@@ -8,8 +8,8 @@ module mpm_hdf5_series
                   h5kind_to_type, h5p_dataset_create_f, h5pclose_f, h5pcreate_f, h5pset_chunk_f, &
                   h5pset_deflate_f, h5pset_shuffle_f, h5s_select_set_f, h5s_unlimited_f, &
                   h5sclose_f, h5screate_simple_f, h5sselect_hyperslab_f, h5t_ieee_f32le, &
-                  h5t_ieee_f64le, h5t_std_i32le, h5t_std_i64le, h5t_std_u8le, h5_integer_kind, h5_real_kind, &
-                  hid_t, hsize_t
+                  h5t_ieee_f64le, h5t_std_i32le, h5t_std_i64le, h5t_std_u8le, h5_integer_kind, &
+                  h5_real_kind, hid_t, hsize_t
   use mpm_chunk_packing, only: pack_chunk
   use mpm_error, only: error_t
   use mpm_hdf5_copy, only: put_chunk
@@ -197,7 +197,7 @@ contains
     call write_rows(series, file, n_rows, rows, error)
   end subroutine write_reals
 
-  !> A value in single precision; what is beyond its range becomes the largest number.
+  !> A value in single precision; a number beyond its range becomes the largest one.
   elemental real(c_float) function shortened(value) result(short)
     real(dp), intent(in) :: value
     real(dp), parameter :: largest = real(huge(short), dp)
@@ -246,10 +246,11 @@ contains
 
     if (n_rows /= series%layout%chunk_rows) return
     if (mod(row_count(series, file), int(max(1, n_rows), ip)) /= 0_ip) return
+    if (.not. is_little_endian) return
     n_values = n_rows*max(1, series%layout%n_columns)
     if (series%layout%compressed) then
       call pack_chunk(rows%packed, rows%n_bytes, rows%plain, n_values, bytes_of_value)
-    else if (is_little_endian) then
+    else
       rows%n_plain = int(n_values, ip)*int(bytes_of_value, ip)
     end if
   end subroutine fill_chunk

@@ -1,9 +1,10 @@
 !> The model in words, for the log.
 module mpm_log_model
+  use mpm_equilibrium, only: newton_settings_t
   use mpm_initial_stress, only: initial_stress_t
   use mpm_kinds, only: dp
-  use mpm_linear_method, only: method_automatic, method_name
-  use mpm_linear_solver, only: has_mumps
+  use mpm_linear_method, only: library_of, method_automatic, method_name, method_recycled
+  use mpm_linear_solver, only: library_single
   use mpm_material, only: law_von_mises, material_t
   use mpm_mesh, only: face_set_t, mesh_t
   use mpm_mesh_motion, only: mesh_motion_t
@@ -128,8 +129,7 @@ contains
            //integer_text(step%newton%max_backtracks)//" backtracks, prediction " &
            //trim(merge("on ", "off", step%newton%prediction))//", stretch at most " &
            //real_text(step%newton%max_stretch)//line_end &
-           //"    linear solver: "//solver_text(step%newton%linear_solver, &
-                                              step%newton%least_recycled)//line_end
+           //"    linear solver: "//solver_text(step%newton)//line_end
     if (step%newton%eigenvalues) text = text//"    eigenvalues of the tangent: " &
       & //"in every increment"//line_end
     if (allocated(step%constraint)) then
@@ -142,21 +142,20 @@ contains
   end function step_text
 
   !> How the systems of the corrections are solved.
-  pure function solver_text(method, least) result(text)
-    integer, intent(in) :: method !! method_*
-    integer, intent(in) :: least  !! unknowns from which automatic means recycling
+  pure function solver_text(newton) result(text)
+    type(newton_settings_t), intent(in) :: newton
     character(:), allocatable :: text
 
-    select case (method)
+    select case (newton%linear_solver)
     case (method_automatic)
       text = "DIRECT"
-      if (least < huge(least)) &
-        text = "RECYCLED from "//integer_text(least)//" unknowns on, DIRECT below"
+      if (newton%least_recycled < huge(newton%least_recycled)) text = "RECYCLED from "// &
+        integer_text(newton%least_recycled)//" unknowns on, DIRECT below"
     case default
-      text = method_name(method)
+      text = method_name(newton%linear_solver)
     end select
-    if (index(text, "RECYCLED") > 0 .and. has_mumps()) &
-      text = text//"; factors that are kept: single precision, by MUMPS"
+    if (index(text, "RECYCLED") > 0 .and. library_of(method_recycled, newton%eigenvalues) &
+        == library_single) text = text//"; factors that are kept: single precision, by MUMPS"
   end function solver_text
 
   !> The largest displacement that a geostatic step accepts.

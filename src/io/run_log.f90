@@ -118,7 +118,9 @@ contains
     if (report%n_given_up > 0) text = line_end//"  start from the last increment given up after " &
       & //integer_text(report%n_given_up)//" iterations"
     if (report%n_inexact > 0) text = text//line_end//"  corrections by GMRES given up after "// &
-      & integer_text(report%n_inexact)//" iterations, repeated with all digits"
+      & integer_text(report%n_inexact)//" iterations, repeated with ten digits"
+    if (report%left_single) text = text//line_end//"  factors that are kept are of double "// &
+      & "precision from now on: single precision does not serve"
   end function start_text
 
   !> Pairs of the ghost penalty, and what it carries in an increment that converged.
@@ -182,7 +184,6 @@ contains
     if (i > size(report%gmres) .or. all(report%gmres == 0)) return
     if (report%gmres(i) > 0) text = " gmres "//integer_text(report%gmres(i))
     if (report%is_new(i)) text = text//" new factors"
-    if (report%left_single == i) text = text//", of double precision from now on"
   end function linear_text
 
   !> Where an attempt failed.
