@@ -3,9 +3,9 @@ module mpm_estimate_job
   use mpm_assembly, only: assemble_tangent
   use mpm_error, only: error_t
   use mpm_factor_estimate, only: factor_seconds, measure_flop_rate
-  use mpm_linear_solver, only: is_exact
   use mpm_increments, only: accept_step, begin_step, schedule_t, start_increment
   use mpm_kinds, only: dp
+  use mpm_linear_solver, only: is_exact
   use mpm_material_points, only: hand_over, unsort_points
   use mpm_model, only: model_t
   use mpm_results_file, only: is_field_output_due

@@ -5,7 +5,7 @@ module mpm_solve_job
   use mpm_clock, only: wall_time
   use mpm_dof_map, only: number_dofs, start_where_nodes_stand, turn_prescribed
   use mpm_equilibrium, only: find_equilibrium
-  use mpm_error, only: error_t, exit_model, exit_no_convergence, exit_solver, make_error
+  use mpm_error, only: error_t, exit_file, exit_model, exit_no_convergence, exit_solver, make_error
   use mpm_external_force, only: check_applied, external_force, prepare_loads
   use mpm_geostatic_step, only: report_move
   use mpm_ghost_penalty, only: build_ghost
@@ -157,6 +157,7 @@ contains
     if (any(code == [exit_model, exit_no_convergence, exit_solver])) then
       call save_point(analysis, output, model, ignored)
     end if
+    if (code == exit_file) return ! nodal values may be those of an attempt
     call write_last_state(output, model, analysis%body%mesh, analysis%body%points, state, ignored)
   end subroutine keep_last_state
 
@@ -334,7 +335,13 @@ contains
         newton%eigenvalues .or. system%recycler%now%needs_double))
     end associate
     if (is_analysed(system%solver) .and. pattern_is_current(system%map, system%active, &
-                                                            system%dofs, system%ghost%node)) return
+                                                            system%dofs, system%ghost%node)) then
+      ! Another library may have taken over meanwhile.
+      if (system%n_judged < system%solver%n_analyses) call check_limit(error, system, model, &
+                                                                       max_memory)
+      system%n_judged = system%solver%n_analyses
+      return
+    end if
     call build_pattern(system%tangent, system%map, body%patches, body%mesh, system%dofs, &
                        system%active, system%ghost%node)
     if (.not. allocated(system%map%position)) then
@@ -349,6 +356,7 @@ contains
       call make_error(error, exit_solver, "error: the pattern of the tangent cannot be analysed")
     else
       call check_limit(error, system, model, max_memory)
+      system%n_judged = system%solver%n_analyses
     end if
   end subroutine prepare_increment
 

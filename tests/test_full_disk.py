@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 from small_runs import (
     FILES,
@@ -137,6 +138,25 @@ def test_other_file_that_fails_costs_no_results(whole, tessera, library, tmp_pat
     assert n_increments == n_converged(run.folder) >= 3
     for name, found, expected in zip(FILES, run.results, whole.results):
         assert check_part(found, expected, name) == n_increments + 1
+
+
+def test_attempt_that_cannot_be_told_leaves_no_values(whole, tessera, library, tmp_path):
+    """Converged, but its line of the status file is refused: not accepted, so in no output."""
+    run = SmallRun(tessera, library, tmp_path / "run")
+    deck = run.folder / f"{JOB}.inp"
+    deck.write_text(deck_with().replace("FIELD, FREQUENCY=1", "FIELD, FREQUENCY=3"))
+    process = run.run(Disturbance(str(errno.ENOSPC), 6, FOREVER, "write", path=".sta"))
+    check_error(process, os.strerror(errno.ENOSPC))
+    mesh, expected = run.results[1], whole.results[1]
+    times = list(expected["VTKHDF/Steps/Values"])
+    for step, when in enumerate(mesh["VTKHDF/Steps/Values"]):
+        for name in ("U", "RF"):
+            values = [
+                data[f"VTKHDF/PointData/{name}"][data[f"VTKHDF/Steps/PointDataOffsets/{name}"][i] :]
+                for data, i in ((mesh, step), (expected, times.index(when)))
+            ]
+            n = int(mesh["VTKHDF/NumberOfPoints"][0])
+            np.testing.assert_array_equal(values[0][:n], values[1][:n], f"{name} at {when}")
 
 
 # --- file systems --------------------------------------------------------------------------------
