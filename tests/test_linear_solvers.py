@@ -1,7 +1,9 @@
 """Linear solvers of *CONTROLS: one answer, and the refusal of the one that is not there."""
 
 import re
+import subprocess
 
+import h5py
 import numpy as np
 import pytest
 from restart_runs import CUBE, PLATE, STRIP, datasets
@@ -26,6 +28,55 @@ Y, 0, 1, 1
 X0, 1, 1
 *DLOAD
 ALL, GRAV, 1.0, 0, -1
+*END STEP
+"""
+
+HINGE = """\
+*GENERATE, TYPE=BOX, DIMENSION=2, ORDER=QUADRATIC
+X, 0, 2, {cells}
+Y, 0, 2, {cells}
+*ELSET, ELSET=BODY
+{elements}
+*FORMULATION, TYPE=FBAR PATCH
+*PATCH, SOURCE=QUADRATIC
+*MATERIAL, NAME=CLAY
+*DENSITY
+2.0
+*ELASTIC
+1E5, 0.3
+*MATERIAL POINTS, ELSET=BODY, MATERIAL=CLAY, PER ELEMENT=4
+*STEP
+*STATIC, DIRECT
+0.5, 1
+*CONTROLS, LINEAR SOLVER={solver}
+*BOUNDARY
+X0, 1, 2
+*DLOAD
+BODY, GRAV, 1.0, 1, 1
+*HISTORY, NSET=X0
+RF
+*END STEP
+"""
+
+LARGE = """\
+*GENERATE, TYPE=BOX, DIMENSION=3
+X, 0, 1, 15
+Y, 0, 1, 15
+Z, 0, 1, 15
+*FORMULATION, TYPE=STANDARD
+*MATERIAL, NAME=CLAY
+*ELASTIC
+1000, 0.3
+*PLASTIC, LAW=VON MISES, STRENGTH=UNIAXIAL
+5.0
+*MATERIAL POINTS, ELSET=ALL, MATERIAL=CLAY, PER ELEMENT=1
+*STEP
+*STATIC, DIRECT
+1, 1
+*CONTROLS, LINEAR SOLVER={solver}
+*BOUNDARY
+Z0, 1, 3
+Z1, 3, 3, -0.01
 *END STEP
 """
 
@@ -108,9 +159,27 @@ def test_factors_that_are_kept_are_of_single_precision(run_tessera, tmp_path, mu
 def test_slender_bodies_need_double_precision(run_tessera, tmp_path, mumps):
     """Pivots of a beam 300 times as long as thick say nothing in single precision."""
     found, log = history_of(run_tessera, tmp_path, BEAM, "RECYCLED")
-    assert log.count("new factors, of double precision from now on") == (1 if mumps else 0)
+    assert log.count("are of double precision from now on") == (1 if mumps else 0)
     direct, _ = history_of(run_tessera, tmp_path, BEAM, "DIRECT")
     compare_histories(found, direct)
+
+
+def test_limit_on_memory_holds_after_the_change(run_tessera, mumps):
+    """UMFPACK's factors, which are taken from the first increment on, are above the limit."""
+    if not mumps:
+        pytest.skip("this program was built without MUMPS")
+    deck = solved_by(BEAM, "RECYCLED")
+    needs = [
+        float(
+            re.search(r"memory of the run +([0-9.]+) MB", run_tessera(text, "--estimate").stdout)[1]
+        )
+        for text in (deck, deck.replace("RECYCLED", "DIRECT"))
+    ]
+    assert needs[1] > needs[0] + 0.5
+    run = run_tessera(deck, "-q", "--max-memory", str(sum(needs) / 2000.0))
+    assert run.code == 5
+    assert "and --max-memory allows" in run.stderr
+    assert "increment 2" in run.stderr
 
 
 def test_recycling_makes_few_factors(run_tessera, tmp_path):
@@ -130,6 +199,37 @@ def test_every_solver_refuses_a_mechanism(run_tessera, mumps, solver):
     run = run_tessera(MECHANISM.format(solver=solver), "-q", "--lax")
     assert run.code == 3
     assert "free to move" in run.stderr
+
+
+@pytest.mark.parametrize("solver", ["DIRECT", "RECYCLED", "MUMPS"])
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_every_solver_refuses_a_hinge(run_tessera, mumps, solver, n):
+    """Two blocks of n by n squares that hang together by a node: only pivots can tell."""
+    if solver == "MUMPS" and not mumps:
+        pytest.skip("this program was built without MUMPS")
+    squares = [2 * n * j + i for j in range(2 * n) for i in range(2 * n) if (i < n) == (j < n)]
+    elements = "\n".join(f"{2 * square + 1}, {2 * square + 2}" for square in squares)
+    run = run_tessera(HINGE.format(cells=2 * n, elements=elements, solver=solver), "-q")
+    assert run.code == 3
+    assert "hangs by node" in run.stderr
+    assert "the tangent is singular" in run.stderr
+
+
+@pytest.mark.parametrize("solver", ["RECYCLED", "MUMPS"])
+def test_orderings_of_large_models_are_the_same(tessera_release, tmp_path, mumps, solver):
+    """More unknowns than the smallest ones, which are ordered in another way."""
+    if solver == "MUMPS" and not mumps:
+        pytest.skip("this program was built without MUMPS")
+    deck = tmp_path / "job.inp"
+    deck.write_text(LARGE.format(solver=solver))
+    residuals = []
+    for threads in ("1", "2", "1"):
+        command = [tessera_release, "-q", "-f", "-t", threads, str(deck)]
+        subprocess.run(command, cwd=tmp_path, check=True)
+        with h5py.File(tmp_path / "job.vtkhdf") as file:
+            assert file["tessera/ledger/unknowns"][-1] > 10000
+            residuals.append(file["tessera/iterations/residual"][()].tobytes())
+    assert residuals[0] == residuals[1] == residuals[2]
 
 
 def test_mumps_is_refused_where_it_is_not(run_tessera, mumps):
