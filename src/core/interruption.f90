@@ -5,7 +5,7 @@ module mpm_interruption
   use, intrinsic :: iso_c_binding, only: c_funloc, c_funptr, c_int, c_intptr_t
   implicit none
   private
-  public :: catch_signals, forget_signal, received_signal
+  public :: catch_signals, forget_signal, note_termination, received_signal
   public :: signal_hang_up, signal_interrupt, signal_terminate
 
   integer, parameter :: signal_hang_up = 1    !! SIGHUP: the terminal went away
@@ -64,6 +64,11 @@ contains
     if (received /= 0_c_int) call c_exit_now(code)
     received = number
   end subroutine note_signal
+
+  !> Notes a SIGTERM that a library has caught.
+  subroutine note_termination()
+    call note_signal(int(signal_terminate, c_int))
+  end subroutine note_termination
 
   !> The signal that came, 0 if none did.
   integer function received_signal() result(number)

@@ -113,14 +113,15 @@ contains
     real(c_double) :: found(0:mumps_found - 1)
     integer(c_int) :: code
     integer(c_int), allocatable :: place(:)
+    character(80) :: reason
+    integer :: problem
     logical :: is_ordered
 
-    allocate (place(matrix%n))
+    outcome = solver_memory
+    allocate (place(matrix%n), stat=problem, errmsg=reason)
+    if (problem /= 0) return
     call order_by_nodes(place, matrix, is_ordered)
-    if (.not. is_ordered) then
-      outcome = solver_memory ! METIS does not say why
-      return
-    end if
+    if (.not. is_ordered) return
     solver%mumps = mumps_analyse(merge(1_c_int, 0_c_int, solver%library == library_single), &
                                  int(matrix%n, c_int), int(matrix%nnz, c_long), matrix%col_ptr, &
                                  matrix%row, place, code, found)

@@ -18,6 +18,7 @@ enum { BYTES = 0, ENTRIES = 1, FLOPS = 2, N_FOUND = 3 }; /* what a call tells */
 
 enum { INITIALISE = -1, END = -2, ANALYSE = 1, FACTORIZE = 2, SOLVE = 3 };
 enum { GIVEN = 1, MOST_ROOM = 1000, USE_COMM_WORLD = -987654 };
+_Static_assert(sizeof(MUMPS_INT) == sizeof(int), "a MUMPS with indices of 32 bits");
 enum { SMALLEST_PIVOT = 19, LARGEST_PIVOT = 21 };
 
 /* MUMPS tells large counts as negative millions. */
