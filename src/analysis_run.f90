@@ -23,6 +23,7 @@ module mpm_analysis_run
                                               !! mesh and points, which change in none but that
     real(dp), allocatable :: u_start(:, :)    !! (n_dim, n)  displacements of the points at the
                                               !!             start of the step [length]
+    logical  :: is_tentative = .false.        !! the state shows an attempt that is not accepted yet
     real(dp) :: max_memory = 0.0_dp           !! that the run may take [GB], 0 = any
     real(dp) :: last_written = 0.0_dp         !! wall time of the last restart file [s]
   end type analysis_t

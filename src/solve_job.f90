@@ -5,7 +5,7 @@ module mpm_solve_job
   use mpm_clock, only: wall_time
   use mpm_dof_map, only: number_dofs, start_where_nodes_stand, turn_prescribed
   use mpm_equilibrium, only: find_equilibrium
-  use mpm_error, only: error_t, exit_file, exit_model, exit_no_convergence, exit_solver, make_error
+  use mpm_error, only: error_t, exit_model, exit_no_convergence, exit_solver, make_error
   use mpm_external_force, only: check_applied, external_force, prepare_loads
   use mpm_geostatic_step, only: report_move
   use mpm_ghost_penalty, only: build_ghost
@@ -32,10 +32,11 @@ module mpm_solve_job
   use mpm_restart_state, only: restart_t
   use mpm_run_failure, only: check_count, check_held, memory_error, place_of, record_failure, &
     refuse_mechanism, report_lost_point, shorten
+  use mpm_run_log, only: log_message
   use mpm_run_memory, only: check_limit
   use mpm_run_notes, only: note_attempt, note_equilibrium, note_location
   use mpm_run_output, only: run_output_t, write_attempt, write_increment, write_last_state
-  use mpm_run_state, only: make_run_state, note_checkerboard, run_state_t
+  use mpm_run_state, only: make_run_state, note_checkerboard, run_state_t, take_nodal_values
   use mpm_sparsity, only: build_pattern, pattern_is_current
   use mpm_surface_points, only: locate_surface_points
   use mpm_system, only: body_t, find_active, free_system, open_system, system_t
@@ -105,6 +106,10 @@ contains
       if (allocated(error)) return
       call restore_point(analysis, state, model, stops_of_restart(restart, model), error)
       if (allocated(error)) return
+      if (analysis%system%recycler%now%needs_double) then
+        call log_message(output%log, "factors that are kept are of double precision", error)
+        if (allocated(error)) return
+      end if
     else
       call make_run_state(state, model%mesh%n_dim, model%mesh%n_node, model%mesh%n_el, &
                           model%patches%n)
@@ -157,7 +162,7 @@ contains
     if (any(code == [exit_model, exit_no_convergence, exit_solver])) then
       call save_point(analysis, output, model, ignored)
     end if
-    if (code == exit_file) return ! nodal values may be those of an attempt
+    if (analysis%is_tentative) call take_nodal_values(state, analysis%kept%state)
     call write_last_state(output, model, analysis%body%mesh, analysis%body%points, state, ignored)
   end subroutine keep_last_state
 
@@ -185,7 +190,8 @@ contains
         call find_equilibrium(system, report, body, model%step(schedule%step)%newton, output)
         call refuse_mechanism(report, body, system%u, schedule, model)
         call note_attempt(state, schedule, report, system, body)
-        if (report%outcome == outcome_converged) call note_equilibrium(state, system, body, model)
+        analysis%is_tentative = report%outcome == outcome_converged
+        if (analysis%is_tentative) call note_equilibrium(state, system, body, model)
         call write_attempt(output, state, report, error)
         if (allocated(error)) return
         if (report%outcome == outcome_interrupted) then
@@ -228,11 +234,11 @@ contains
       ! First, because it may fail: the last increment is then the one before.
       call lay_out_mesh(body, system, model%motion, error)
       if (allocated(error)) then
-        state%node_u = state%node_u - system%u
         error%message = error%message//place_of(schedule, model)
         return
       end if
       call accept_points(body, system)
+      analysis%is_tentative = .false.
       system%u_last = system%u
       call accept_step(schedule, n_iterations)
       call keep_below_stretch(schedule, analysis%report%stretch, &
@@ -337,8 +343,9 @@ contains
     if (is_analysed(system%solver) .and. pattern_is_current(system%map, system%active, &
                                                             system%dofs, system%ghost%node)) then
       ! Another library may have taken over meanwhile.
-      if (system%n_judged < system%solver%n_analyses) call check_limit(error, system, model, &
-                                                                       max_memory)
+      if (system%n_judged < system%solver%n_analyses) then
+        call check_limit(error, system, model, max_memory)
+      end if
       system%n_judged = system%solver%n_analyses
       return
     end if

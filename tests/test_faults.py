@@ -500,3 +500,51 @@ def test_paraview_reads_the_file(run_tessera):
     assert (grid.n_points, grid.n_cells) == (9, 8)
     assert {"U_INC", "RESIDUAL", "WORST"} <= set(grid.point_data)
     assert {"PATCH", "NPOINTS", "ACTIVE", "FILL", "J", "WORST"} <= set(grid.cell_data)
+
+
+# --- what is left ------------------------------------------------------------------------------
+
+FOLDED = """\
+*GENERATE, TYPE=BOX, DIMENSION=2
+X, 0, 1, 2
+Y, 0, 3, 6
+*AMPLITUDE, NAME=A
+0, 0, 0.5, 0.01, 1, 10
+*FORMULATION, TYPE=STANDARD
+*MATERIAL, NAME=CLAY
+*DENSITY
+2.0
+*ELASTIC
+1000, 0.3
+*MATERIAL POINTS, ELSET=ALL, MATERIAL=CLAY, PER ELEMENT=3
+*MOVING MESH, DRIVER=Y1, DIRECTION=0,1, FIXED=Y0
+*STEP
+*STATIC, DIRECT
+0.25, 1
+*BOUNDARY, AMPLITUDE=A
+Y1, 2, 2, -1
+*BOUNDARY
+Y1, 1, 1
+*DLOAD
+ALL, GRAV, 1.0, 0, -1
+*OUTPUT, FIELD, FREQUENCY={frequency}
+*HISTORY, NSET=Y1
+RF
+*END STEP
+"""
+
+
+def test_last_output_is_of_the_last_increment(run_tessera, tmp_path):
+    """An attempt in equilibrium whose mesh would fold is not accepted, and in no output."""
+    last = []
+    for frequency in (1, 10):
+        run = run_tessera(FOLDED.format(frequency=frequency), "-q", "-f")
+        assert run.code == 3
+        assert "would turn element" in run.stderr
+        with h5py.File(tmp_path / "job_mesh.vtkhdf") as file:
+            n = int(file["VTKHDF/NumberOfPoints"][0])
+            data = {name: values[-n:] for name, values in file["VTKHDF/PointData"].items()}
+            last.append((file["VTKHDF/Steps/Values"][-1], data))
+    assert last[0][0] == last[1][0] > 0.0
+    for name, values in last[0][1].items():
+        np.testing.assert_array_equal(values, last[1][1][name], name)

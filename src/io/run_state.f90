@@ -16,7 +16,7 @@ module mpm_run_state
   private
   public :: run_info_t, run_state_t
   public :: end_of_run, estimated_time_left, make_run_info, make_run_state, note_balance
-  public :: note_checkerboard, note_constraints
+  public :: note_checkerboard, note_constraints, take_nodal_values
 
   !> What stays the same during a run and is no part of the model, or its name in the results.
   type :: run_info_t
@@ -105,6 +105,19 @@ contains
     allocate (state%delta_j(n_el), source=1.0_dp)
     allocate (state%delta_j_patch(n_patch), source=1.0_dp)
   end subroutine make_run_state
+
+  !> Takes back nodal values and changes of volume to those of another state.
+  pure subroutine take_nodal_values(state, other)
+    type(run_state_t), intent(inout) :: state !! keeps everything else
+    type(run_state_t), intent(in) :: other    !! of the same mesh
+
+    state%reaction = other%reaction
+    state%applied = other%applied
+    state%delta_u = other%delta_u
+    state%node_u = other%node_u
+    state%delta_j = other%delta_j
+    state%delta_j_patch = other%delta_j_patch
+  end subroutine take_nodal_values
 
   !> Unknowns, entries of the tangent and volumetric constraints of an increment. Source: theory.md (22).
   pure subroutine note_constraints(state, patches, system)
