@@ -22,7 +22,7 @@ module mpm_run_failure
 
   character(*), parameter :: line_end = new_line("a")
   real(dp), parameter :: doubtful_rcond = 1.0e-12_dp !! pivot ratio that may come from a free mode
-  real(dp), parameter :: hopeless_rcond = 1.0e-14_dp !! pivot ratio of rounding errors
+  real(dp), parameter :: hopeless_rcond = 1.0e-13_dp !! pivot ratio of rounding errors
 
 contains
 

@@ -202,7 +202,7 @@ def test_every_solver_refuses_a_mechanism(run_tessera, mumps, solver):
 
 
 @pytest.mark.parametrize("solver", ["DIRECT", "RECYCLED", "MUMPS"])
-@pytest.mark.parametrize("n", [1, 2, 3])
+@pytest.mark.parametrize("n", [1, 2, 3, 4])
 def test_every_solver_refuses_a_hinge(run_tessera, mumps, solver, n):
     """Two blocks of n by n squares that hang together by a node: only pivots can tell."""
     if solver == "MUMPS" and not mumps:
