@@ -371,6 +371,29 @@ def test_no_memory_for_the_factors(run_with_faults):
     assert len(attempts(run)) == 1
 
 
+@pytest.fixture
+def by_mumps(run_tessera):
+    """The square, solved by MUMPS, whose order METIS finds."""
+    if "MUMPS" not in run_tessera("", "--version").stdout:
+        pytest.skip("this program was built without MUMPS")
+    return square(plastic=True).replace("*STATIC", "*CONTROLS, LINEAR SOLVER=MUMPS\n*STATIC")
+
+
+def test_no_memory_for_the_order(run_with_faults, by_mumps):
+    run = run_with_faults(by_mumps, "order", 1, 1)
+    check_failure(
+        run, 5, "error: not enough memory for the analysis of 9 equations with 53 entries"
+    )
+    assert attempts(run) == []
+
+
+def test_signal_that_metis_catches_is_obeyed(run_with_faults, by_mumps):
+    run = run_with_faults(by_mumps, "caught", 1, 1)
+    assert run.code == 143
+    assert (run.folder / "job.restart.h5").exists()
+    assert not (run.folder / "job_fail.vtkhdf").exists()
+
+
 def test_no_memory_for_the_analysis(run_with_faults):
     run = run_with_faults(square(plastic=True), "symbolic", 1, 1)
     start = "error: not enough memory for the analysis of 9 equations with 53 entries: expected"

@@ -1,6 +1,7 @@
 /* Faults of libraries on demand, for LD_PRELOAD.
    UMFPACK: the calls of one function from number FAULT_FIRST on, FAULT_COUNT of them, go wrong.
    FAULT_CALL=symbolic or numeric: out of memory; solve: the first number of the solution is NaN.
+   METIS: FAULT_CALL=order: out of memory; caught: what it answers after a SIGTERM.
    Memory: see malloc at the end. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -9,6 +10,7 @@
 #include <string.h>
 
 #define OUT_OF_MEMORY (-1L)
+enum { METIS_OUT_OF_MEMORY = -3, METIS_CAUGHT = -4 };
 
 typedef long (*symbolic_t)(long, long, const long *, const long *, const double *, void **,
                            const double *, double *);
@@ -16,6 +18,8 @@ typedef long (*numeric_t)(const long *, const long *, const double *, void *, vo
                           const double *, double *);
 typedef long (*solve_t)(long, const long *, const long *, const double *, double *, const double *,
                         void *, const double *, double *);
+
+typedef int (*order_t)(int *, int *, int *, int *, int *, int *, int *);
 
 static int is_due(const char *call)
 {
@@ -59,6 +63,17 @@ long umfpack_dl_solve(long system, const long *col_ptr, const long *row, const d
     if (is_due("solve"))
         x[0] = NAN;
     return status;
+}
+
+int METIS_NodeND(int *n, int *first, int *adjacent, int *weight, int *options, int *vertex,
+                 int *place)
+{
+    order_t original = (order_t)dlsym(RTLD_NEXT, "METIS_NodeND");
+    if (is_due("order"))
+        return METIS_OUT_OF_MEMORY;
+    if (is_due("caught"))
+        return METIS_CAUGHT;
+    return original(n, first, adjacent, weight, options, vertex, place);
 }
 
 /* Of the C library: what malloc does when nobody stands before it. */
