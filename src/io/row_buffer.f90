@@ -23,6 +23,16 @@ module mpm_row_buffer
     module procedure hold_reals, hold_real_rows, hold_integers
   end interface hold_rows
 
+  !> Writes the rows that wait, of one dataset or of several.
+  interface write_buffer
+    module procedure write_one, write_several
+  end interface write_buffer
+
+  !> Adds the rows that wait, of one dataset or of several, to those that their file has.
+  interface add_waiting
+    module procedure add_of_one, add_of_several
+  end interface add_waiting
+
 contains
 
   !> Creates a dataset without rows.
@@ -83,7 +93,7 @@ contains
   end subroutine hold_integers
 
   !> Writes the rows that wait behind those of the dataset.
-  subroutine write_buffer(buffer, file, error)
+  subroutine write_one(buffer, file, error)
     type(row_buffer_t), intent(inout) :: buffer        !! nothing waits
     type(hdf5_file_t), intent(inout) :: file           !! that holds the dataset
     type(error_t), allocatable, intent(inout) :: error !! exit_file
@@ -97,16 +107,39 @@ contains
       call append_rows(buffer%series, file, buffer%reals(:, :buffer%n_waiting), error)
     end if
     buffer%n_waiting = 0
-  end subroutine write_buffer
+  end subroutine write_one
+
+  !> The same of several datasets.
+  subroutine write_several(buffer, file, error)
+    type(row_buffer_t), intent(inout) :: buffer(:)     !! nothing waits
+    type(hdf5_file_t), intent(inout) :: file           !! that holds the datasets
+    type(error_t), allocatable, intent(inout) :: error !! exit_file
+    integer :: i
+
+    do i = 1, size(buffer)
+      call write_one(buffer(i), file, error)
+    end do
+  end subroutine write_several
 
   !> Adds the rows that wait to those that a file has.
-  pure subroutine add_waiting(buffer, n_rows)
+  pure subroutine add_of_one(buffer, n_rows)
     type(row_buffer_t), intent(in) :: buffer
     integer(ip), intent(inout) :: n_rows(:) !! (datasets of the file)
 
     associate (n => n_rows(buffer%series%number))
       n = n + int(buffer%n_waiting, ip)
     end associate
-  end subroutine add_waiting
+  end subroutine add_of_one
+
+  !> The same of several datasets.
+  pure subroutine add_of_several(buffer, n_rows)
+    type(row_buffer_t), intent(in) :: buffer(:)
+    integer(ip), intent(inout) :: n_rows(:) !! (datasets of the file)
+    integer :: i
+
+    do i = 1, size(buffer)
+      call add_of_one(buffer(i), n_rows)
+    end do
+  end subroutine add_of_several
 
 end module mpm_row_buffer

@@ -224,22 +224,10 @@ contains
     type(hdf5_file_t), intent(inout) :: file           !! JOB.vtkhdf
     type(error_t), allocatable, intent(inout) :: error !! exit_file
 
-    call write_columns(tables%history, file, error)
-    call write_columns(tables%iterations, file, error)
-    call write_columns(tables%ledger, file, error)
+    call write_buffer(tables%history, file, error)
+    call write_buffer(tables%iterations, file, error)
+    call write_buffer(tables%ledger, file, error)
   end subroutine write_tables
-
-  !> Writes the rows of a table that wait.
-  subroutine write_columns(column, file, error)
-    type(row_buffer_t), intent(inout) :: column(:)     !! nothing waits
-    type(hdf5_file_t), intent(inout) :: file           !! JOB.vtkhdf
-    type(error_t), allocatable, intent(inout) :: error !! exit_file
-    integer :: i
-
-    do i = 1, size(column)
-      call write_buffer(column(i), file, error)
-    end do
-  end subroutine write_columns
 
   !> Rows of the longest table that wait.
   pure integer function n_waiting(tables) result(n)
@@ -254,21 +242,10 @@ contains
     type(run_tables_t), intent(in) :: tables
     integer(ip), intent(inout) :: n_rows(:) !! (datasets of JOB.vtkhdf)
 
-    call add_columns(tables%history, n_rows)
-    call add_columns(tables%iterations, n_rows)
-    call add_columns(tables%ledger, n_rows)
+    call add_waiting(tables%history, n_rows)
+    call add_waiting(tables%iterations, n_rows)
+    call add_waiting(tables%ledger, n_rows)
   end subroutine add_waiting_tables
-
-  !> Adds the rows of a table that wait.
-  pure subroutine add_columns(column, n_rows)
-    type(row_buffer_t), intent(in) :: column(:)
-    integer(ip), intent(inout) :: n_rows(:) !! (datasets of JOB.vtkhdf)
-    integer :: i
-
-    do i = 1, size(column)
-      call add_waiting(column(i), n_rows)
-    end do
-  end subroutine add_columns
 
   !> A name without the separator of HDF5 paths.
   pure function link_name(name) result(link)

@@ -253,9 +253,7 @@ contains
     integer :: i
 
     if (.not. vtk%file%has_news) return
-    do i = 1, size(vtk%step)
-      call write_buffer(vtk%step(i), vtk%file, error)
-    end do
+    call write_buffer(vtk%step, vtk%file, error)
     do i = 1, size(vtk%field)
       call write_buffer(vtk%field(i)%offsets, vtk%file, error)
     end do
@@ -274,9 +272,7 @@ contains
     mark%first_id = vtk%cells%first_id
     mark%last_offset = vtk%field%last_offset
     mark%n_rows = vtk%file%dataset%n_rows
-    do i = 1, size(vtk%step)
-      call add_waiting(vtk%step(i), mark%n_rows)
-    end do
+    call add_waiting(vtk%step, mark%n_rows)
     do i = 1, size(vtk%field)
       call add_waiting(vtk%field(i)%offsets, mark%n_rows)
     end do
