@@ -118,13 +118,22 @@ contains
     type(run_state_t), intent(in) :: state           !! after the attempt
     type(newton_report_t), intent(in) :: report      !! of the attempt
     type(error_t), allocatable, intent(out) :: error !! exit_file
-    real(dp) :: clock(2)
+    real(dp) :: start
 
-    call cpu_time(clock(1))
+    call cpu_time(start)
     call write_rows_of_attempt(output, state, report, error)
-    call cpu_time(clock(2))
-    output%log%output_seconds = output%log%output_seconds + clock(2) - clock(1)
+    call count_since(output%log, start)
   end subroutine write_attempt
+
+  !> Adds the CPU time since a reading to that of output.
+  subroutine count_since(log, start)
+    type(run_log_t), intent(inout) :: log !! its seconds of output grow
+    real(dp), intent(in) :: start         !! reading of cpu_time [s]
+    real(dp) :: now
+
+    call cpu_time(now)
+    log%output_seconds = log%output_seconds + now - start
+  end subroutine count_since
 
   !> Writes log, status and iterations of an attempt, and shows it.
   subroutine write_rows_of_attempt(output, state, report, error)
@@ -158,12 +167,11 @@ contains
     type(points_t), intent(in)    :: points          !! converged state
     type(run_state_t), intent(in) :: state           !! after the increment
     type(error_t), allocatable, intent(out) :: error !! exit_file
-    real(dp) :: clock(2)
+    real(dp) :: start
 
-    call cpu_time(clock(1))
+    call cpu_time(start)
     call write_rows_and_fields(output, model, mesh, points, state, error)
-    call cpu_time(clock(2))
-    output%log%output_seconds = output%log%output_seconds + clock(2) - clock(1)
+    call count_since(output%log, start)
   end subroutine write_increment
 
   !> Writes the rows of an accepted increment, and its fields when they are due.
@@ -236,15 +244,14 @@ contains
   subroutine publish_between_iterations(watch)
     class(run_output_t), intent(inout) :: watch !! open; perhaps nothing waits any more
     type(error_t), allocatable :: failure
-    real(dp) :: clock(2)
+    real(dp) :: start
 
     if (allocated(watch%failure)) return
     if (.not. is_publication_due(watch%publication, wall_time())) return
-    call cpu_time(clock(1))
+    call cpu_time(start)
     call publish_output(watch, failure)
     call move_alloc(failure, watch%failure)
-    call cpu_time(clock(2))
-    watch%log%output_seconds = watch%log%output_seconds + clock(2) - clock(1)
+    call count_since(watch%log, start)
   end subroutine publish_between_iterations
 
   !> Writes the fields of the last accepted increment before a run ends early, unless they are
@@ -294,15 +301,14 @@ contains
   subroutine close_fields(output, error)
     type(run_output_t), intent(inout) :: output      !! its results are closed
     type(error_t), allocatable, intent(out) :: error !! exit_file
-    real(dp) :: clock(2)
+    real(dp) :: start
 
-    call cpu_time(clock(1))
+    call cpu_time(start)
     associate (file => output%results%points%file)
       if (.not. file%has_failed) call write_tables(output%tables, file, error)
     end associate
     call close_results(output%results, error)
-    call cpu_time(clock(2))
-    output%log%output_seconds = output%log%output_seconds + clock(2) - clock(1)
+    call count_since(output%log, start)
   end subroutine close_fields
 
   !> Keeps an error unless there is one already.
