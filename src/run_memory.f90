@@ -1,9 +1,10 @@
 !> Memory of a run: whether there is enough before it begins, and whether it is allowed.
 module mpm_run_memory
+  use mpm_equilibrium, only: method_for
   use mpm_error, only: error_t, exit_solver, make_error
   use mpm_factor_estimate, only: factor_estimate
   use mpm_kinds, only: dp, ip
-  use mpm_linear_method, only: chosen_method, method_recycled
+  use mpm_linear_method, only: method_recycled
   use mpm_material_points, only: bytes_of_points
   use mpm_memory, only: has_room, megabytes
   use mpm_model, only: model_t
@@ -122,10 +123,7 @@ contains
     type(system_t), intent(in) :: system !! its unknowns are numbered
     type(model_t), intent(in)  :: model
 
-    associate (newton => model%step(1)%newton)
-      keeps_factors = chosen_method(newton%linear_solver, system%dofs%n, &
-                                    newton%least_recycled) == method_recycled
-    end associate
+    keeps_factors = method_for(model%step(1)%newton, system%dofs%n) == method_recycled
   end function keeps_factors
 
   !> What points and mesh take, before anything is known of the equations.

@@ -4,7 +4,7 @@ module mpm_solve_job
   use mpm_analysis_run, only: analysis_t
   use mpm_clock, only: wall_time
   use mpm_dof_map, only: number_dofs, start_where_nodes_stand, turn_prescribed
-  use mpm_equilibrium, only: find_equilibrium
+  use mpm_equilibrium, only: find_equilibrium, method_for
   use mpm_error, only: error_t, exit_model, exit_no_convergence, exit_solver, make_error
   use mpm_external_force, only: check_applied, external_force, prepare_loads
   use mpm_geostatic_step, only: report_move
@@ -14,7 +14,7 @@ module mpm_solve_job
   use mpm_kinds, only: dp
   use mpm_limit_load, only: begin_watch, watch_increment
   use mpm_limit_note, only: note_limit_load
-  use mpm_linear_method, only: chosen_method, library_of
+  use mpm_linear_method, only: library_of
   use mpm_linear_solver, only: choose_library, is_analysed, solver_memory, solver_ok
   use mpm_material_points, only: hand_over, points_t, sort_points
   use mpm_memory, only: give_back_memory
@@ -336,9 +336,9 @@ contains
     call build_ghost(system%ghost, ghost_factor(body, schedule), body%mesh, body%points, &
                      body%material, system%active)
     associate (newton => model%step(schedule%step)%newton)
-      call choose_library(system%solver, library_of( &
-        chosen_method(newton%linear_solver, system%dofs%n, newton%least_recycled), &
-        newton%eigenvalues .or. system%recycler%now%needs_double))
+      call choose_library(system%solver, library_of(method_for(newton, system%dofs%n), &
+                                                    newton%eigenvalues .or. &
+                                                    system%recycler%now%needs_double))
     end associate
     if (is_analysed(system%solver) .and. pattern_is_current(system%map, system%active, &
                                                             system%dofs, system%ghost%node)) then

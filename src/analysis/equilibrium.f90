@@ -20,7 +20,7 @@ module mpm_equilibrium
   use mpm_tangent_solution, only: choose_accuracy, factorize_again, forcing_t, solve_tangent
   implicit none
   private
-  public :: find_equilibrium, newton_settings_t
+  public :: find_equilibrium, method_for, newton_settings_t
 
   real(dp), parameter :: near = 0.1_dp !! largest residual of a prediction worth a start [-]
 
@@ -119,6 +119,14 @@ contains
     report%seconds(:, 1) = seconds
     call start_at_rest(newton, system, report, body, .true.)
   end subroutine begin_again
+
+  !> The method that solves the linear systems of a number of unknowns.
+  pure integer function method_for(settings, n) result(method)
+    type(newton_settings_t), intent(in) :: settings
+    integer, intent(in) :: n !! unknowns
+
+    method = chosen_method(settings%linear_solver, n, settings%least_recycled)
+  end function method_for
 
   !> No displacement: the prescribed one comes with the first correction.
   subroutine start_at_rest(newton, system, report, body, with_moduli)
@@ -249,8 +257,7 @@ contains
                          iteration > 1 .or. newton%moved), report%residual(iteration - 1), &
                          report%n_plastic > 0, settings%tolerance)
     call solve_tangent(newton%x, system, rhs, newton%forcing%accuracy, &
-                       chosen_method(settings%linear_solver, system%dofs%n, &
-                                     settings%least_recycled), outcome)
+                       method_for(settings, system%dofs%n), outcome)
     newton%forcing%gave_up = system%recycler%gave_up
     if (system%dofs%n > 0) report%rcond = min(report%rcond, system%solver%rcond)
     report%seconds(3:5, iteration) = report%seconds(3:5, iteration) &
