@@ -164,6 +164,18 @@ def test_slender_bodies_need_double_precision(run_tessera, tmp_path, mumps):
     compare_histories(found, direct)
 
 
+def test_log_of_a_restart_tells_the_precision(run_tessera, tmp_path, mumps):
+    if not mumps:
+        pytest.skip("this program was built without MUMPS")
+    deck = solved_by(BEAM, "RECYCLED").replace("*END", "*RESTART, WRITE, FREQUENCY=1\n*END")
+    assert run_tessera(deck, "-q").code == 0
+    run = run_tessera(deck, "-q", "-o", "other", "--restart", "job.restart.1.h5")
+    assert (run.code, run.stderr) == (0, "")
+    log = (tmp_path / "other" / "job.log").read_text()
+    assert "\nfactors that are kept are of double precision\n" in log
+    assert "from now on" not in log
+
+
 def test_limit_on_memory_holds_after_the_change(run_tessera, mumps):
     """UMFPACK's factors, which are taken from the first increment on, are above the limit."""
     if not mumps:
